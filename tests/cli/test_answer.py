@@ -73,6 +73,7 @@ def test_of_many_runs_that_ended_badly_and_of_many_reasons_the_rest_is_counted(m
         "NOT RUN 2: why 2",
     ]
     assert any(re.search(r"\b2 more reasons", line) for line in lines)
+    assert "reasons" not in str(said(ran(made, [replace(study, verdicts=study.verdicts[:3])])))
 
 
 def test_plain_data_hold_what_the_text_says(made):

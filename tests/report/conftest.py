@@ -57,11 +57,11 @@ def is_told(word):
 
 
 def shortened(text):
-    """Return a text of which many words in a row that are only words have become their first and last two."""
+    """Return a text in which words between numbers have become the first, how many more there are, and the last."""
     shown = []
     for told, run in groupby(text.replace("\xa0", "~").split(" "), is_told):
         words = list(run)
-        shown += words if told or len(words) < 7 else [*words[:2], "…", *words[-2:]]
+        shown += words if told or len(words) < 5 else [words[0], f"…{len(words) - 2}", words[-1]]
     return " ".join(shown)
 
 
@@ -94,7 +94,7 @@ def kept_figures():
             text = figure_text(figure)
             words = [float(word) if NUMBER.fullmatch(word) else word for word in text.split()]
             total = summed(words) + summed(looks(figure))
-            lines.append(f"{file}: {len(text.splitlines())} lines, {total:.2f}")
+            lines.append(f"{file}: {len(text.splitlines())} lines, {total:.4f}")
             lines += [text, ""] if file in whole else []
         _held(name, with_line_numbers("\n".join(lines)) + "\n")
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from validation.report.figures import curves
+from validation.report.figures import curves, motion
 from validation.report.figures import histories as figures
 from validation.report.figures.drawing import FigureHooks
 from validation.report.figures.space_time import SpaceTime
@@ -20,6 +20,10 @@ def test_a_kind_of_scene_that_nobody_draws_is_an_empty_sheet():
     assert not axes.axison and not axes.lines
     across, rows = ShowingHooks().drawing(load_scene("rigid-impact").expand()[0], None)
     assert across == 0 and [words.split()[0] for _, words in rows] == ["young", "density", "gravity"]
+
+
+def test_rows_are_filled_evenly():
+    assert [motion._columns(count) for count in (5, 6, 11)] == [5, 3, 4]
 
 
 def test_thin_keeps_ends_and_every_spike():
@@ -41,7 +45,7 @@ def test_each_solver_has_one_style_and_no_two_share_it():
     assert curves.style_of("abaqus") == curves.LineStyle("#cc79a7", (1.5, 1.0), 1.0, 2)  # depends on the name alone
 
 
-@pytest.mark.parametrize(("lift", "times"), [(0.0, 1.0), (50.0, 1.0), (1e-3, 500.0)])
+@pytest.mark.parametrize(("lift", "times"), [(0.0, 1.0), (2e-3, 200.0), (50.0, 1.0), (1e-3, 500.0)])
 def test_gaps_are_magnified_to_a_part_of_the_lowest_block(lift, times):
     time, faces = np.linspace(0.0, 0.1, 11), np.array([0.0, 1.0, 3.0])
     assert SpaceTime("", time, faces, np.array([0 * time, lift * time / 0.1]), np.zeros((2, 11))).magnification == times

@@ -50,7 +50,10 @@ def boxes():
         Criterion("rebound", Status.FAIL, 0.5, 0.01, 0.3, "of the speed", 0.0),
         Criterion("sinking", Status.PASS, 0.0, 0.0, 0.3, "of the side", 0.3),
     )
-    numbers = (Quantity("rebound", "m/s", 0.7, 1.4, (1.386, 1.414)), Quantity("sinking", "1", None, 0.0, (0.0, 0.01)))
+    numbers = (
+        Quantity("rebound", "m/s", 0.70714, 1.4, (1.386, 1.414)),
+        Quantity("sinking", "1", None, 0.0, (0.0, 0.01)),
+    )
     time = 0.1 * np.arange(1, 4)
     history = History(time, {name: 0.0 * time if name == "box.angle" else time for name in one.columns})
     return JudgedAnswer(
@@ -102,7 +105,7 @@ def test_what_a_verdict_rests_on_is_said(kept, kept_figures, drawn, tmp_path):
     assert data["numbers"][0] == {
         "name": "rebound",
         "unit": "m/s",
-        "value": 0.7,
+        "value": 0.707,
         "exact": 1.4,
         "low": 1.39,
         "high": 1.41,

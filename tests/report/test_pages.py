@@ -118,7 +118,8 @@ def answers(*names):
 
 
 def panel(**values):
-    return HistoryPanel("", {name: made_history(0.1, v) for name, v in values.items()}, {"displacement": 1.0}, "bar")
+    histories = {name: made_history(0.1, v, 0 * v) for name, v in values.items()}
+    return HistoryPanel("", histories, {"displacement": 1.0}, "bar")
 
 
 def charts():
@@ -149,7 +150,7 @@ def figures(group):
         "response": response.response_figure(answers("dda", "bar"), False),
         "response per metre": response.response_figure(answers("dda"), True, per_metre=True),
         "column": space_time_figure([column, weak], 46.0),
-        "blown up": motion.history_figure([blown], "displacement", apart=True),
+        "blown up": motion.history_figure([blown], "displacement", "contact_pressure", apart=True),
         "fast": motion.history_figure([fast], "displacement", apart=True),
         "slide": slide,
         "charts": chart_figure(three[3:]),

@@ -39,8 +39,8 @@ def test_the_case_and_the_window_that_open_a_page(known, drawn, tmp_path):
     cases = [vibrating(*numbers, metrics) for numbers in ((0.002, 0.005), (0.001, 0.08), (0.0005, 0.6))]
     (block,) = lead_figure(made_group(*cases), tmp_path)
     assert block.caption.startswith("dt = 0.001 s, of 3 cases")
-    assert re.search("dda .* 8\u00a0% .* bar .* displacement", block.caption)
     window = drawn["scene-lead.svg"].axes[0].get_xlim()[1]
+    assert re.search(f"{window:.3g} s dda .* 8\u00a0% .* bar .* displacement", block.caption)
     assert window == pytest.approx(PERIODS * 2 * np.pi / FREQUENCY, rel=0.02 if known else 0.2)
 
 

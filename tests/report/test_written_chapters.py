@@ -139,7 +139,7 @@ solver = "bar"
 file = "scenes.svg"
 caption = "As drawn."
 height = 31.0
-scenes = { "figures-3-4*" = "First", "nowhere" = "Never" }
+scenes = { "figures-3-4*" = "First", "nowhere" = "Never", "*0.002]" = "Second" }
 [picture.nothing]
 scenes = { "nowhere" = "Never" }
 [text]

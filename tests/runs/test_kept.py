@@ -1,5 +1,6 @@
 """What is kept and told of runs: results directories, contacts, columns, names, texts, files and what is absent."""
 
+import fcntl
 import itertools
 import os
 import platform
@@ -14,7 +15,7 @@ import pytest
 from oracles.made_cases import made_history, made_row
 
 from validation.errors import InputError
-from validation.runs import columns, extras, files, provenance, strict, tables, units
+from validation.runs import columns, extras, files, provenance, strict, tables, text, units
 from validation.runs.case_name import CaseName, scene_of
 from validation.runs.defects import Defects, DefectsError, Place
 from validation.runs.regular import kind_of, regular
@@ -81,6 +82,8 @@ def test_verdicts_of_a_study_take_the_place_of_its_own(tmp_path):
     assert "low <= high" in refusal(results.verdicts)
     results.write_verdicts("a", [verdict("a", "z")])
     assert len(results.verdicts()) == 3
+    with results._locked(), open(tmp_path / ".lock") as other, pytest.raises(BlockingIOError):
+        fcntl.flock(other, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
 def test_columns_have_units_words_and_an_order():
@@ -101,6 +104,11 @@ def test_headers_are_recognised_with_their_units():
     found = [units.recognised(header, known) for header in headers]
     assert [one and one[0] for one in found] == [*3 * ["displacement"], None, "time", None, None]
     assert [one[1] for one in found if one] == pytest.approx([1.0, 1e-3, 1e-2, 1e-3])
+    prefixes = {"": 1.0, "u": 1e-6, "m": 1e-3, "c": 1e-2, "k": 1e3, "M": 1e6, "G": 1e9}
+    for unit, others in units.OTHERS.items():
+        for symbol, factor in others.items():
+            own = {"bar": 1e5, "deg": np.pi / 180}.get(symbol) or prefixes[symbol.removesuffix(unit)]
+            assert factor == pytest.approx(own, rel=1e-12), symbol
 
 
 def test_names_of_cases_are_taken_apart_as_they_are_put_together():
@@ -217,6 +225,7 @@ def test_cells_are_found_with_their_places():
 
 
 def test_bytes_that_are_no_text_have_a_place(tmp_path):
+    assert text.shown("\x1bé\u00a0") == "\\x1bé\u00a0"
     path = tmp_path / "t.csv"
     for content, place, value, advice in UNREADABLE:
         path.write_bytes(content)
