@@ -88,8 +88,9 @@ def test_a_full_output_is_one_line(monkeypatch):
 
 
 def test_a_module_that_is_nowhere_is_refused_before_anything_runs():
-    line = refused("solve", "field-locked", "--solver", "nowhere:solve")
-    assert line.startswith("error: solver: ") and "nowhere:solve" in line
+    for words in (("solve", "field-locked", "--solver"), ("judge", "--study", "core")):
+        line = refused(*words, "nowhere:solve")
+        assert line.startswith("error: solver: ") and "nowhere:solve" in line
 
 
 def test_the_version_is_that_of_the_distribution():

@@ -65,23 +65,29 @@ def shortened(text):
     return " ".join(shown)
 
 
+def wrapped(text):
+    return textwrap.wrap(text, 118, subsequent_indent="  ", break_on_hyphens=False) or [""]
+
+
 def lines_of(block):
     """Return the kind of a block and what of it is not the default, a line for each row; `~` is a space that holds."""
     if isinstance(block, str):
-        return textwrap.wrap(shortened(block), 118, subsequent_indent="  ", break_on_hyphens=False) or [""]
+        return wrapped(shortened(block))
     if isinstance(block, TableColumn):
-        kind = "" if block.kind == "text" else f"{block.kind}: "
-        return [f"{kind}{block.group} / {block.title}".replace(" / ", "", not block.group)]
+        kind = "" if block.kind == "text" else f"{block.kind[0]}:"
+        return f"{kind}{block.group} / {block.title}".replace(" / ", "", not block.group)
     if isinstance(block, tuple):
-        return lines_of(" | ".join(block))
+        return lines_of(" | ".join(block)) if isinstance(block[0], str) else wrapped(" | ".join(map(lines_of, block)))
     lines = []
     for field in fields(block):
         value = getattr(block, field.name)
+        value = (value,) if field.name == "columns" else value
         if value != field.default:
             inner = [line for one in value for line in lines_of(one)] if isinstance(value, tuple) else []
-            name = "" if field.name in ("text", "rows", "items") else f"{field.name}: "
+            name = "" if field.name in ("text", "columns", "rows", "items", "file") else f"{field.name}: "
             lines += lines_of(f"{name}{value}") if not inner else [*[name.rstrip()] * bool(name), *inner]
-    return [f"{type(block).__name__}", *(f"  {line}" for line in lines)]
+    first, *others = lines or [""]
+    return [f"{type(block).__name__} {first}".rstrip(), *(f"  {line}" for line in others)]
 
 
 @pytest.fixture

@@ -1,8 +1,11 @@
 """Figures: nothing is lost by thinning, names never overlap, the same data give the same bytes."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from oracles.made_cases import made_history
 
 from validation.report.figures import curves, motion
 from validation.report.figures import histories as figures
@@ -24,6 +27,24 @@ def test_a_kind_of_scene_that_nobody_draws_is_an_empty_sheet():
 
 def test_rows_are_filled_evenly():
     assert [motion._columns(count) for count in (5, 6, 11)] == [5, 3, 4]
+
+
+def test_a_solver_lies_on_another_that_it_equals_in_every_panel():
+    x, off = np.arange(1.0, 5.0), np.array([0.0, 0.01, 0.0, 0.0])
+    columns = {
+        "dda": (x, x),
+        "bar": (x + off / 10, x),
+        "fem": (x, x + off),
+        "layers": (x,),
+        "continuum": (np.inf * x, x),
+    }
+    columns |= {"block-events": (x[:3], x[:3]), "bar-events": (x, x + off)}
+    histories = {name: made_history(0.1, *own) for name, own in columns.items()}
+    first = curves.HistoryPanel("", histories, {"displacement": 100.0}, None)
+    second = replace(first, histories={"dda": histories["layers"], "bar-events": histories["fem"]})
+    found = motion.twins([first, second], ["displacement", "contact_pressure", "slip"])
+    assert found.pop("dda") == {"bar": pytest.approx(1e-5)} and len(found) == 5 and not any(found.values())
+    assert {*motion.twins([first], ["displacement"])["dda"]} == {"bar", "fem", "layers", "bar-events"}
 
 
 def test_thin_keeps_ends_and_every_spike():

@@ -10,6 +10,7 @@ from oracles.made_cases import made_case, made_group, made_history
 from validation.metrics.catalogue import CATALOGUE
 from validation.report import book
 from validation.report.appendix.pages import appendix
+from validation.report.blocks import Heading
 from validation.report.chapters import budget
 from validation.report.chapters.data import groups_of_studies
 from validation.report.chapters.scene import scene_page, slide_figure
@@ -41,7 +42,8 @@ def test_the_first_and_the_last_pages_say_what_is_of_all_studies(made_results, k
     passed = [{**verdicts[0], "verdict": "PASS", "id": f"{number}@0.2s", "reason": "so"} for number in range(3)]
     last = appendix(made_results, groups, [*verdicts, *passed], STUDIES, True)
     blocks = [*front_pages(None, groups, verdicts), *last]
-    kept("report", blocks)
+    words = blocks.index(Heading("Twelve words", 2))
+    kept("report", blocks[:words] + blocks[words + 2 :])
     assert not [name for name in CATALOGUE if name in str(blocks)]  # quantities have words
 
 

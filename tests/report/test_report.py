@@ -67,7 +67,7 @@ def test_figures_are_written_as_svg_and_png(small, tmp_path, monkeypatch):
     assert {(p.suffix, p.read_bytes()[:4]) for p in paths} == {(".png", PNG), (".svg", b"<?xm")}
 
 
-def test_bad_requests_name_what_is_wrong(small, tmp_path):
+def test_bad_requests_name_what_is_wrong(small, tmp_path, monkeypatch):
     with pytest.raises(InputError, match=r"mine.*got 'core'") as unknown:
         write_figures(small, tmp_path, ["core"])
     with pytest.raises(InputError) as empty:
@@ -76,6 +76,14 @@ def test_bad_requests_name_what_is_wrong(small, tmp_path):
         build(small, tmp_path / "absent" / "r.pdf")
     sources = [error.value.source for error in (empty, lost)]
     assert unknown.value.field == "study" and sources == [tmp_path / "nowhere", tmp_path / "absent" / "r.pdf"]
+    small.write_json("studies/old.json", {"study": "other"})
+    monkeypatch.setattr(book, "chapter_blocks", lambda *_: [])
+    monkeypatch.setattr(book, "write_document", lambda out, blocks: blocks(tmp_path))
+    (callout,) = [block for block in build(small, tmp_path, ["old", "mine"]) if "'other'" in str(block)]
+    assert callout.tone == "fail"
+    for ask, place, words in ((build, "r", "'other'"), (write_figures, "results/rows.jsonl", "cannot be made")):
+        with pytest.raises(InputError, match=words):
+            ask(small, tmp_path / place, ["old"])
     with pytest.raises(ValueError, match=r"^rows: .*got 3$"):
         Table((TableColumn("a"), TableColumn("b")), (("1", "2", "3"),))
 

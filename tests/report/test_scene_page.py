@@ -55,14 +55,6 @@ def test_a_count_that_is_none_is_no_small_number():
     assert [row[1] for row in numbers_table(numbers).rows] == ["0", "<10⁻¹²"]
 
 
-def test_the_level_of_a_history_is_that_of_the_reference(drawn, tmp_path):
-    metrics = {solver: {"displacement.static": level} for solver, level in (("dda", -0.003), ("bar", -0.007))}
-    histories = {solver: made_history(0.001, -1e-3 * np.arange(9.0)) for solver in metrics}
-    history_block(made_group(made_case(BASE, metrics, histories)), ["displacement"], tmp_path)
-    levels = {float(line.get_ydata()[0]) for figure in drawn.values() for line in figure.axes[0].lines}
-    assert -7.0 in levels and -3.0 not in levels
-
-
 def test_what_damping_removed_is_told_by_its_parts(kept):
     still = BASE.with_values({"time.alpha": 0.25, "time.delta": 0.5})
     damped = still.with_values({"time.gg": 0.997, "damping.mass": 7.0, "damping.stiffness": 3e-5})

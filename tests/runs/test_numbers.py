@@ -15,7 +15,7 @@ NUMBERS = [  # function, value, text
     (numbers.plain, 999999.0, "999999"), (numbers.plain, math.nan, "not a number"), (numbers.plain, -math.inf, "−∞"),
     (numbers.short, 0.25, "0.25"), (numbers.short, 5e6, "5×10⁶"), (numbers.percent, 43.7, "4370\u00a0%"),
     (numbers.percent, 2e-5, "2.0×10⁻⁵"), (numbers.percent, 0.0, "0\u00a0%"),
-    (numbers.signed_percent, 0.05, "+5\u00a0%"), (numbers.signed_percent, 0.0, "+0\u00a0%"), (numbers.signed_percent, -0.05, "−5\u00a0%"),
+    (numbers.signed_percent, 0.0, "+0\u00a0%"), (numbers.signed_percent, -0.05, "−5\u00a0%"),
     (numbers.error_percent, None, "–"), (numbers.error_percent, 1e-13, "below 1e-9 %"),
     (numbers.error_percent, 0.0123, "1.2 %"), (numbers.milliseconds, 0.002, "2\u00a0ms"),
     (numbers._brief, -9e-10, "0"), (numbers._brief, -9e-4, "<0.001"), (numbers._brief, 1e-3, "0.001"),
