@@ -265,7 +265,11 @@ def test_a_solver_on_several_ranks_is_told_with_their_number(monkeypatch):
 
     monkeypatch.setattr(run, run._run_case.__name__, stopped)
     done = typed("solve", *CASE, "--solver", "fenicsx", "--ranks", "2", "--full")
-    assert done.stdout.startswith("figures-3-4 fenicsx:2: overflow: ") and found == [("fenicsx:2", True)]
+    assert done.stdout.startswith("figures-3-4 fenicsx:2: overflow: ") and found.pop() == ("fenicsx:2", True)
+    prepared = SimpleNamespace()
+    run._watch(lambda *given: found.append(given[:2]), prepared)
+    prepared.progress(0.371)
+    assert found == [(37, 100)]
 
 
 def test_answers_that_are_kept_and_written_as_a_pdf_are_named(monkeypatch, tmp_path):

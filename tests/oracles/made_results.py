@@ -114,7 +114,10 @@ def made_rows(scene, **more):
 def budget(scene):
     """Return a damping budget of constant curves, of which that of the contact ends and the first begins overdamped."""
     dt = np.geomspace(1e-5, 1e-2, 20)
-    first = {part: [value] * 20 for part, value in (("total", 0.05), ("algorithmic", 0.012), ("kinetic", 0.015))}
+    first = {
+        part: [value] * 20
+        for part, value in (("total", 0.05), ("algorithmic", 0.012), ("kinetic", 0.015), ("viscous", 0.02))
+    }
     first["total"][0] = 1.2
     contact = {part: [0.9] * 15 + [None] * 5 for part in first}
     return {

@@ -62,11 +62,11 @@ def boxes():
 
 
 def partial():
-    """Return an answer that withholds a column, whose scheme would pass at a quarter of the step."""
+    """Return an answer that withholds a column, whose scheme would pass at a seventh of the step."""
     one = judged()
     asked = replace(one.judgement.criteria[0], status=Status.NOT_REPORTED, error=None)
     criteria = (replace(asked, reason="it is asked for"), *one.judgement.criteria[1:])
-    why = Cause("a scheme.", ("scheme",), {"gg": 0.5}, passing_step=one.problem.scene.time.step / 4)
+    why = Cause("a scheme.", ("scheme",), {"gg": 0.5}, passing_step=one.problem.scene.time.step / 7)
     judgement = replace(one.judgement, criteria=criteria, quantities=())
     return replace(one, judgement=judgement, cause=why, warnings=("It does not repeat.",))
 
@@ -88,7 +88,7 @@ def test_what_a_verdict_rests_on_is_said(kept, kept_figures, drawn, tmp_path):
     assert chapter.as_data(partial()) == {
         "verdict": "PARTIAL",
         "not_reported": ["displacement_m"],
-        "cause": {"sentence": "a scheme.", "ids": ["scheme"], "values": {"gg": 0.5}, "passing_step_s": 0.0005},
+        "cause": {"sentence": "a scheme.", "ids": ["scheme"], "values": {"gg": 0.5}, "passing_step_s": 0.002 / 7},
         "criteria": [
             {"name": name, "verdict": str(status), "error": error, "allowed": allowed, "until_s": until,
              "within_until_s": within, "reason": reason}

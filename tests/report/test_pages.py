@@ -2,6 +2,7 @@
 
 import re
 import tomllib
+from string import ascii_lowercase
 
 import numpy as np
 import pytest
@@ -121,7 +122,7 @@ def answers(*names):
 
 def panel(**values):
     histories = {name: made_history(0.1, v, 0 * v) for name, v in values.items()}
-    return HistoryPanel("", histories, {"displacement": 1.0}, "bar")
+    return HistoryPanel(" ".join(2 * ascii_lowercase), histories, {"displacement": 1.0}, "bar")
 
 
 def charts():
@@ -131,7 +132,7 @@ def charts():
     stated = {"marks": {"a/c": 12.0, "beyond": 99.0}, "levels": {"5 %": 5.0}}
     return [
         ChartPanel("Slip", "t [s]", "slip [mm]", (run, other), names="upper left", x_ticks=4, **stated),
-        ChartPanel("Error", "n", "", (other, run), logarithmic=(True, True), x_range=(0.5, 30.0)),
+        ChartPanel("Error", "n", "", (other, run), (0.5, 30.0), (1.0, 45.0), (True, True)),
         ChartPanel("", "", "", (run,), x_ticks={1.0: "one"}, y_ticks=3, names="beside"),
         ChartPanel("Nothing", "t [s]", "", (), names="lower left"),
     ]

@@ -1,6 +1,7 @@
 """The page of a scene: its drawing, and the case and window that show what the solvers differ by."""
 
 import re
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -13,7 +14,7 @@ from validation.report.chapters.compare import _facts
 from validation.report.chapters.damping import damping_table
 from validation.report.chapters.gates import value_cell
 from validation.report.chapters.judged import numbers_table
-from validation.report.chapters.scene import PERIODS, _reading, history_block, lead_figure
+from validation.report.chapters.scene import PERIODS, _reading, free_window, history_block, lead_difference, lead_figure
 from validation.report.chapters.summary import _frequency, damping_blocks
 from validation.report.chapters.text import _pressure
 from validation.report.figures.curves import HistoryPanel
@@ -78,6 +79,15 @@ def test_the_nearest_explanation_is_told_where_it_has_a_cause():
     for causes in ([], ["gg", "start"]):
         answer.nearest = {"causes": causes}
         assert len(_facts(answer)[0].rows) == 1 + bool(causes)
+
+
+def test_few_swings_and_what_has_no_column_say_nothing():
+    x = np.sin(0.5 * np.arange(1.0, 21.0))
+    histories = {"bar": made_history(0.01, x), "dda": made_history(0.01, x, x)}
+    assert free_window(made_case(BASE, {"dda": {}}, histories), "contact_pressure") == pytest.approx(0.2)
+    one = HistoryPanel("", histories, {}, "bar")
+    others = (one, replace(one, histories={"dda": histories["dda"], "bar": made_history(0.01, x[:9], x[:9])}))
+    assert [lead_difference(panel, "contact_pressure") for panel in others] == [None, None]
 
 
 def test_a_case_without_a_step_in_the_common_time_is_left_out(drawn, tmp_path):

@@ -214,13 +214,19 @@ UNREADABLE = [  # bytes of a table, and where and what the first one is that is 
 
 
 def test_cells_are_found_with_their_places():
-    rows = tables.rows_of('time , "x ""2"" "," , 3"\n\n1;"2";;\n  4   5\n" 6 ",""\n')
-    assert [[cell.text for cell in row] for row in rows] == [["time", 'x "2"', ", 3"], ["1", "2"], ["4", "5"], ["6"]]
+    rows = tables.rows_of('time , "x ""2"" "," , 3"\n\n1;"2";;\n  4   5\n" 6 ",""\n7 "\n8', 5)
+    assert [[cell.text for cell in row] for row in rows] == [
+        ["time", 'x "2"', ", 3"],
+        ["1", "2"],
+        ["4", "5"],
+        ["6"],
+        ["7", '"'],
+    ]
     assert [(cell.line, cell.column) for row in rows for cell in row] == [
         *((1, 1), (1, 8), (1, 19)),
         *((3, 1), (3, 3)),
         *((4, 3), (4, 7)),
-        (5, 1),
+        *((5, 1), (6, 1), (6, 3)),
     ]
 
 
