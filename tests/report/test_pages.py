@@ -167,4 +167,4 @@ def figures(group):
 
 def test_figures_hold_lines_names_and_axes(made_results, kept_figures):
     group = groups_of_studies(made_results, [made_results.manifest("mine")])["figures-3-4"]
-    kept_figures("figures", figures(group), ("column", "rows"))
+    kept_figures("figures", figures(group), ("column",))
