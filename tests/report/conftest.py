@@ -78,16 +78,19 @@ def lines_of(block):
         return f"{kind}{block.group} / {block.title}".replace(" / ", "", not block.group)
     if isinstance(block, tuple):
         return lines_of(" | ".join(block)) if isinstance(block[0], str) else wrapped(" | ".join(map(lines_of, block)))
+    kind = type(block).__name__
     lines = []
     for field in fields(block):
         value = getattr(block, field.name)
         value = (value,) if field.name == "columns" else value
-        if value != field.default:
+        if field.name in ("tone", "level") and value != field.default:
+            kind += f" {value}:"
+        elif value != field.default:
             inner = [line for one in value for line in lines_of(one)] if isinstance(value, tuple) else []
             name = "" if field.name in ("text", "columns", "rows", "items", "file") else f"{field.name}: "
             lines += lines_of(f"{name}{value}") if not inner else [*[name.rstrip()] * bool(name), *inner]
     first, *others = lines or [""]
-    return [f"{type(block).__name__} {first}".rstrip(), *(f"  {line}" for line in others)]
+    return [f"{kind} {first}".rstrip(), *(f"  {line}" for line in others)]
 
 
 @pytest.fixture
