@@ -10,6 +10,7 @@ import pytest
 from conftest import refused, typed
 
 from validation.cli import entry
+from validation.cli.printing import output
 from validation.entry import command, siblings
 
 OUT_OF_RANGE = """
@@ -102,6 +103,17 @@ def test_no_command_shows_the_commands_once():
     done = typed()
     assert done.returncode == 2 and not done.stderr.strip()
     assert done.stdout.count("export-pack") == 1
+
+
+def test_streams_are_there_and_take_every_character(monkeypatch):
+    errors = io.TextIOWrapper(io.BytesIO(), "ascii")
+    monkeypatch.setattr(sys, "stdout", None)
+    monkeypatch.setattr(sys, "stderr", errors)
+    output.prepare()
+    with sys.stdout as stream:
+        print("x", file=stream)
+    print("é", file=sys.stderr, flush=True)
+    assert errors.buffer.getvalue() == b"\\xe9\n"
 
 
 # ---- what starts first ----------------------------------------------------------------------------------------------

@@ -70,7 +70,7 @@ def wrapped(text):
 
 
 def lines_of(block):
-    """Return the kind of a block and what of it is not the default, a line for each row; `~` is a space that holds."""
+    """Return the kind of a block but a paragraph, and what is no default, a line a row; `~` is a space that holds."""
     if isinstance(block, str):
         return wrapped(shortened(block))
     if isinstance(block, TableColumn):
@@ -78,7 +78,7 @@ def lines_of(block):
         return f"{kind}{block.group} / {block.title}".replace(" / ", "", not block.group)
     if isinstance(block, tuple):
         return lines_of(" | ".join(block)) if isinstance(block[0], str) else wrapped(" | ".join(map(lines_of, block)))
-    kind = type(block).__name__
+    kind = type(block).__name__.replace("Paragraph", "")
     lines = []
     for field in fields(block):
         value = getattr(block, field.name)
@@ -90,7 +90,7 @@ def lines_of(block):
             name = "" if field.name in ("text", "columns", "rows", "items", "file") else f"{field.name}: "
             lines += lines_of(f"{name}{value}") if not inner else [*[name.rstrip()] * bool(name), *inner]
     first, *others = lines or [""]
-    return [f"{kind} {first}".rstrip(), *(f"  {line}" for line in others)]
+    return [f"{kind} {first}".strip(), *(f"  {line}" for line in others)]
 
 
 @pytest.fixture

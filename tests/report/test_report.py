@@ -13,8 +13,8 @@ from validation.report.blocks import FigureBlock, Paragraph, Table, TableColumn
 from validation.report.book import build, write_figures
 from validation.report.chapters import answers as chapters_answers
 from validation.report.chapters import gates as chapters_gates
+from validation.report.chapters import ledger, summary
 from validation.report.chapters import scene as chapters
-from validation.report.chapters import summary
 from validation.report.chapters import text as chapters_text
 from validation.report.chapters.data import groups_of_studies
 from validation.report.front import front_pages
@@ -133,9 +133,7 @@ def test_numbers():
 @pytest.mark.parametrize(
     ("scenes", "labels"),
     [
-        (load_scene("figures-3-4").expand(), ["dt = 0.01 s", "dt = 0.002 s", "dt = 0.001 s"]),
         (load_scene("figure-7").expand(), ["p = 1E", "p = 10E", "p = 100E"]),
-        (load_scene("figure-8").expand(), ["α = 0.25, δ = 0.5", "α = 0.5, δ = 1"]),
         ([MANY.with_values({"time.steps": n}, label=True) for n in (10, 20)], ["steps = 10", "steps = 20"]),
         (
             [MANY.with_values({"contact.stiffness": p, "load.pressure": q}, label=True) for p, q in PRESSED],
@@ -161,4 +159,8 @@ def test_what_a_reference_is_worth_is_told(kept):
         case = made_case(scene, {name: {} for name in (*solvers, reference)})
         pairs = [between(scene.name, solver, reference, displacement_l2=0.1) for solver in solvers]
         told.append(Paragraph(summary.reference_note(made_group(case, comparisons=pairs), case)))
+    code = between(scene.name, "dda", "dda-textbook", displacement_l2=1e-7, pressure_l2=0.3)
+    form = between(scene.name, "dda", "bar", displacement_l2=0.04, pressure_l2=0.03)
+    for pairs in ([code], [form], [form, code]):
+        told.append(Paragraph(ledger.headline([made_group(case, comparisons=pairs)])))
     kept("references", told)
