@@ -102,7 +102,7 @@ def made_rows(scene, **more):
             metrics = {
                 "displacement.static": -0.01 - 7e-4 * place, "displacement.settling_step": 44.0 + place,
                 "pressure.static": 5e6, "pressure.settling_step": "undefined", "pressure.minimum": -0.338e6 * number,
-                "displacement.peak": -0.0123 * number, "mode1.frequency": 327.682 + 16.9 * (solver == "dda"),
+                "displacement.peak": -0.0123 * number, "mode1.frequency": 327.682 + 16.9 / number * (solver == "dda"),
                 "mode1.damping": 0.3 / number, "mode1.measured_damping": "not reported",
             } | more  # fmt: skip
             seconds = {"setup": 1e-3 * place, "stepping": 4e-3 * number * place}
@@ -222,7 +222,7 @@ LOOKS = ("zorder", "alpha", "clip_on", "linewidth", "markeredgewidth", "fontsize
 def looks(figure):
     """Yield how things are drawn: layers, widths, letters, sides, dashes, and how high titles stand."""
     for axes in figure.axes:
-        yield float(axes.titleOffsetTrans.get_matrix()[1, 2])
+        yield from map(float, (axes.titleOffsetTrans.get_matrix()[1, 2], *axes.yaxis.label.get_position()))
         lines = [line for line in axes.lines if _kind(axes, line) == "data"]
         arrows = [text.arrow_patch for text in axes.texts if getattr(text, "arrow_patch", None)]
         for artist in (*lines, *axes.patches, *axes.collections, *axes.texts, *arrows):

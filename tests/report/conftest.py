@@ -95,29 +95,18 @@ def lines_of(block):
 
 @pytest.fixture
 def kept_figures():
-    """Hold some figures to a page in `pages`, as `kept` holds blocks; of others what their words and numbers sum to."""
+    """Hold figures to a page in `pages`: what their words and numbers sum to; a test that fails prints them."""
 
-    def check(name, drawn, whole=()):
+    def check(name, drawn):
         lines = []
         for file, figure in sorted(drawn.items()):
             text = figure_text(figure)
+            print(text)
             words = [float(word) if NUMBER.fullmatch(word) else word for word in text.split()]
-            total = summed(words) + summed(looks(figure))
-            lines.append(f"{file}: {len(text.splitlines())} lines, {total:.4f}")
-            lines += [text, ""] if file in whole else []
-        _held(name, with_line_numbers("\n".join(lines)) + "\n")
+            lines.append(f"{file}: {len(text.splitlines())} lines, {summed(words) + summed(looks(figure)):.4f}\n")
+        _held(name, "".join(lines))
 
     return check
-
-
-def with_line_numbers(text):
-    """Return a text in which a long line that stands above as well is the number of that one."""
-    lines = text.splitlines()
-    places = {line: number for number, line in reversed([*enumerate(lines, start=1)])}
-    return "\n".join(
-        f"  = line {places[line]}" if places[line] < number and len(line) > 20 else line
-        for number, line in enumerate(lines, start=1)
-    )
 
 
 def _held(name, text):

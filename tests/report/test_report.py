@@ -163,4 +163,6 @@ def test_what_a_reference_is_worth_is_told(kept):
     form = between(scene.name, "dda", "bar", displacement_l2=0.04, pressure_l2=0.03)
     for pairs in ([code], [form], [form, code]):
         told.append(Paragraph(ledger.headline([made_group(case, comparisons=pairs)])))
+    told.append(Paragraph(chapters.conclusion(made_group(case, comparisons=[form | {"window": 0.0}]))))
+    assert chapters.slide_figure(made_group(case)) is None
     kept("references", told)

@@ -78,13 +78,15 @@ def test_the_nearest_explanation_is_told_where_it_has_a_cause():
     answer = SimpleNamespace(causes=(), nearest=None, unexplained=0.0371, alike=[], departure=None, opened=(3, 17))
     for causes in ([], ["gg", "start"]):
         answer.nearest = {"causes": causes}
-        assert len(_facts(answer)[0].rows) == 1 + bool(causes)
+        assert _facts(answer)[0].rows[:-1] == (("nearest", "gg, start: 3.7 % left"),) * bool(causes)
 
 
-def test_few_swings_and_what_has_no_column_say_nothing():
+def test_few_swings_a_driven_motion_and_what_has_no_column_say_nothing():
     x = np.sin(0.5 * np.arange(1.0, 21.0))
     histories = {"bar": made_history(0.01, x), "dda": made_history(0.01, x, x)}
     assert free_window(made_case(BASE, {"dda": {}}, histories), "contact_pressure") == pytest.approx(0.2)
+    driven = made_case(BASE.with_values({"load.base_motion": "x.csv"}), {"dda": {"mode1.frequency": 345.0}}, histories)
+    assert free_window(driven, "displacement") == pytest.approx(0.2)
     one = HistoryPanel("", histories, {}, "bar")
     others = (one, replace(one, histories={"dda": histories["dda"], "bar": made_history(0.01, x[:9], x[:9])}))
     assert [lead_difference(panel, "contact_pressure") for panel in others] == [None, None]

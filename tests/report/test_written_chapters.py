@@ -160,6 +160,9 @@ value = "time.step"
 pick = "most"
 factor = 1e3
 form = "g"
+[number.fine]
+value = "time.step"
+pick = "least"
 [number.absent]
 value = "closed: absent"
 [list.cases]
@@ -199,6 +202,7 @@ lines = [
     { x_ends = [0.0, 1.0], y = "closed: ratio", name = "level" },
 ]
 [panel.b]
+marks = { here = "fine", "{coarse} ms" = "coarse", there = "absent" }
 x_ticks = [[1.0, "one"]]
 [[panel.b.lines]]
 where = { "time.step" = 0.01 }

@@ -124,7 +124,7 @@ def test_json_is_strict(tmp_path):
     for refused in ("NaN", "1e999", str(limit + 1), "9" * 21, "[" * 100_000):
         with pytest.raises(ValueError, match=r"number|nested"):
             strict.loads(refused)
-    assert strict.defect_of({"a": 1}, dict[str, str]).startswith("a: ") and strict.defect_of([1], list[int]) is None
+    assert strict.defect_of({"a": 1}, dict[str, str]).startswith("a: inp") and strict.defect_of([1], list[int]) is None
     (tmp_path / "bytes").write_bytes(b"\xff")
     assert refusal(strict.read, tmp_path / "bytes", list, "") == "must be UTF-8 text"
     assert refusal(regular, tmp_path / "bytes", 0.5) == "must be at most 0 bytes"
