@@ -118,7 +118,7 @@ def taken(seconds):
 
 NUMBERS = [  # function, value, text
     (band, (5.0, 5.0), "5 … 5"), (band, (-0.0053065, -0.0053055), "−0.0053065 … −0.0053055"),
-    (band, (0, 1e-12), "0 … 1×10⁻¹²"), (band, (344.561 - 3e-9, 344.561 + 3e-9), "344.561 ± 3×10⁻⁹"),
+    (band, (0, 1e-12), "0 … 1×10⁻¹²"), (band, (344.561 - 3.4e-9, 344.561 + 3.4e-9), "344.561 ± 3.4×10⁻⁹"),
     (told, ["PASS"], "its one gate passes"), (told, ["FAIL"], "its one gate fails"),
     (taken, (1.204, 2.05), "3.3"), (taken, (None,), chapters_answers.DASH),
     (told, ["NOT RUN"], "its one gate did not run"), (told, ["FAIL", "PASS"], "1 of 2 gates fails"),

@@ -81,7 +81,7 @@ def test_the_nearest_explanation_is_told_where_it_has_a_cause():
         assert _facts(answer)[0].rows[:-1] == (("nearest", "gg, start: 3.7 % left"),) * bool(causes)
 
 
-def test_few_swings_a_driven_motion_and_what_has_no_column_say_nothing():
+def test_few_swings_and_driven_motions_show_all():
     x = np.sin(0.5 * np.arange(1.0, 21.0))
     histories = {"bar": made_history(0.01, x), "dda": made_history(0.01, x, x)}
     assert free_window(made_case(BASE, {"dda": {}}, histories), "contact_pressure") == pytest.approx(0.2)

@@ -93,6 +93,9 @@ def test_a_page_for_each_study_and_scene_and_no_link_leads_nowhere(site):
     assert "article 7480937" in files["index.html"] and 'id="feng2017"' in files["references.html"]
     assert all(words in files["index.html"] for words in ("FAIL", REASON, '"../index.html"'))
     titles = [unescape(re.search("<title>([^<]*)", text)[1]) for _, text in sorted(files.items()) if "<title>" in text]
+    for word, stem in (("pass", "passing"), ("fail", "fail---ing")):
+        judged = {name for name, text in files.items() if f'class="verdict {word}"' in text and name != "index.html"}
+        assert judged == {f"study-{stem}.html", f"scene-{stem}.html"}
     assert titles[3:] == [f"{FAILING}: plain", f"passing: {HOSTILE}", "plain", HOSTILE]
 
 
