@@ -85,7 +85,7 @@ def lines_of(block):
         value = (value,) if field.name == "columns" else value
         if field.name in ("tone", "level") and value != field.default:
             kind += f" {value}:"
-        elif value != field.default:
+        elif value not in (field.default, ""):
             inner = [line for one in value for line in lines_of(one)] if isinstance(value, tuple) else []
             name = "" if field.name in ("text", "columns", "rows", "items", "file") else f"{field.name}: "
             lines += lines_of(f"{name}{value}") if not inner else [*[name.rstrip()] * bool(name), *inner]

