@@ -110,7 +110,7 @@ def test_headers_are_recognised_with_their_units():
 
 
 def test_samples_of_a_damped_motion_show_its_alias():
-    for xi, is_beyond in ((0.4, True), (0.8, False)):
+    for xi, is_beyond in ((0.4, True), (0.75, False)):
         decay, turn = 10 * xi, 10 * np.sqrt(1 - xi**2)
         root = np.exp(0.4 * complex(-decay, turn))
         mode = Mode(10.0, 1.0, (root, root.conjugate()), sampled=True)
