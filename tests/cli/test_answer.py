@@ -66,13 +66,15 @@ def test_of_very_many_failures_the_rest_is_counted_by_metric(made):
 
 def test_of_many_runs_that_ended_badly_and_of_many_reasons_the_rest_is_counted(made):
     ended = {(f"s{number}", "dda"): Outcome.TIMEOUT for number in range(FAILURES_SHOWN + 2)}
+    kept_study(made, [(CASE.model_copy(update={"name": name}), made_row("dda", {}, name), None) for name, _ in ended])
     study = replace(run_of("made", [replace(NOT_RUN, why=f"why {number}") for number in (1, 2, 2, 3, 3, 3, 4)]))
     lines = said(ran(made, [replace(study, outcomes=ended)]))
     assert [line for line in lines if line.startswith("NOT RUN") and "reasons" not in line] == [
         "NOT RUN 3: why 3",
         "NOT RUN 2: why 2",
     ]
-    assert any(re.search(r"\b2 more reasons", line) for line in lines)
+    assert all(re.search(rf"\b2 more {what}", "\n".join(lines)) for what in ("reasons", "runs ended"))
+    assert "reasons" not in str(said(ran(made, [replace(study, verdicts=study.verdicts[:3])])))
 
 
 def test_plain_data_hold_what_the_text_says(made):

@@ -12,18 +12,8 @@ def test_verdicts_that_are_no_text_are_told_as_such(tmp_path):
 
 
 def test_springs_that_no_mode_can_have_are_named_by_an_alarm_not_by_a_warning(scene_file, tmp_path):
-    done = typed(
-        "run",
-        scene_file,
-        "--set",
-        "contact.stiffness=1e308",
-        "--set",
-        "time.steps=5",
-        "--set",
-        'run.solvers=["dda","bar"]',
-        "--results",
-        tmp_path / "results",
-    )
+    words = ["--set", "contact.stiffness=1e308", "--set", "time.steps=5", "--results"]
+    done = typed("run", scene_file, "--set", 'run.solvers=["dda","bar"]', *words, tmp_path / "results")
     assert "small" in done.stdout and "FloatingPointError" in done.stdout
     assert "RuntimeWarning" not in done.stderr
 

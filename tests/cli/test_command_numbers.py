@@ -12,8 +12,6 @@ from validation.gates.gate import Gate, Status, Verdict
 from validation.runs.results import Results
 from validation.scenes.scene import load_scene
 
-# ---- solve and run ------------------------------------------------------------------------------------------------
-
 
 @pytest.mark.parametrize(
     ("words", "required", "refused", "worse", "status"),

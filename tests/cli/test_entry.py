@@ -10,6 +10,7 @@ import pytest
 from conftest import refused, typed
 
 from validation.cli import entry
+from validation.cli.printing import output
 from validation.entry import command, siblings
 
 OUT_OF_RANGE = """
@@ -51,7 +52,8 @@ def test_errors_of_numbers_are_bad_input(error, monkeypatch):
         raise error
 
     monkeypatch.setattr(entry, "command_line", lambda: fail)
-    assert refused("list").startswith("error: ")
+    said = refused("list")
+    assert said.startswith("error: ") and "None" not in said
 
 
 @pytest.mark.parametrize("error", [ValueError("fault"), ModuleNotFoundError("fault", name="os.fault")])
@@ -87,8 +89,9 @@ def test_a_full_output_is_one_line(monkeypatch):
 
 
 def test_a_module_that_is_nowhere_is_refused_before_anything_runs():
-    line = refused("solve", "field-locked", "--solver", "nowhere:solve")
-    assert line.startswith("error: solver: ") and "nowhere:solve" in line
+    for words in (("solve", "field-locked", "--solver"), ("judge", "--study", "core")):
+        line = refused(*words, "nowhere:solve")
+        assert line.startswith("error: solver: ") and "nowhere:solve" in line
 
 
 def test_the_version_is_that_of_the_distribution():
@@ -100,6 +103,17 @@ def test_no_command_shows_the_commands_once():
     done = typed()
     assert done.returncode == 2 and not done.stderr.strip()
     assert done.stdout.count("export-pack") == 1
+
+
+def test_streams_are_there_and_take_every_character(monkeypatch):
+    errors = io.TextIOWrapper(io.BytesIO(), "ascii")
+    monkeypatch.setattr(sys, "stdout", None)
+    monkeypatch.setattr(sys, "stderr", errors)
+    output.prepare()
+    with sys.stdout as stream:
+        print("x", file=stream)
+    print("é", file=sys.stderr, flush=True)
+    assert errors.buffer.getvalue() == b"\\xe9\n"
 
 
 # ---- what starts first ----------------------------------------------------------------------------------------------

@@ -52,7 +52,7 @@ def test_a_withheld_column_that_the_problem_asks_for_is_no_full_pass(tmp_path, e
     place = answered(tmp_path / "mine", 1.0, ("locked",), not_reported={"locked": ["contact_pressure_Pa"]})
     (place / "locked.csv").write_text(table_of(problem("locked"), exact, ["displacement"]))
     done = typed("judge", place, "--out", tmp_path / "site")
-    assert done.returncode == 1
+    assert done.returncode == 1 and "wrote site/index.html" in done.stdout.replace(f"{tmp_path}/", "")
     badge = ElementTree.parse(tmp_path / "site/badge_bob-s-code-co_1.0_default.svg").getroot()
     assert badge.attrib["aria-label"].endswith("default: 0 of 1 PASS, 1 PARTIAL")
     (found,) = json.loads(typed("judge", place, "--json").stdout)["answers"]

@@ -3,6 +3,7 @@
 import os
 import signal
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from types import SimpleNamespace
 
 import pytest
@@ -106,3 +107,12 @@ def test_handlers_are_there_as_long_as_they_are_asked_for_and_what_is_ignored_st
         raise ValueError("what a library has made of it")
     with pytest.raises(ZeroDivisionError), signals.interruptible():
         raise ZeroDivisionError
+
+
+def test_a_thread_beside_the_main_one_is_left_as_it_is():
+    def watched():
+        with signals.interruptible():
+            return signal.getsignal(signal.SIGTERM)
+
+    with ThreadPoolExecutor(1) as pool:
+        assert pool.submit(watched).result() is signal.getsignal(signal.SIGTERM)

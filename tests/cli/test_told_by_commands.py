@@ -220,7 +220,7 @@ def test_a_run_is_of_the_studies_that_are_named_on_the_machine_that_is_stated(wo
     assert (two.returncode, two.stderr[:17]) == (2, "error: --scene: g")
 
 
-def test_causes_that_give_the_same_history_are_told_apart():
+def test_causes_that_give_the_same_history_are_told_apart(monkeypatch):
     stages = (Stage("one", True, "so", {}), Stage("two", False, "not so", {}), Stage("three", None, "who knows", {}))
     alike = {"causes": ["scheme", "gg"], "values": {"gg": 0.98765432}, "further_scene": "a longer run"}
     answer = SimpleNamespace(
@@ -241,6 +241,35 @@ def test_causes_that_give_the_same_history_are_told_apart():
     ]
     answer.remedy = "--set time.gg=0.9"
     assert [*cli_compare._lines(answer)][1] == "to run the scene so, add --set time.gg=0.9"
+    answer.departs, answer.as_dict = True, dict
+    found = []
+    stand_ins = {
+        "diagnosis.judgement.compare": lambda *given: answer,
+        "diagnosis.reading.read": lambda *given: given,
+        "report.chapters.compare.write_document": lambda out, blocks: found.append(out),
+        "report.chapters.compare.answer_figure": lambda *given, slide: slide,
+        "report.figures.response.save_as": lambda *given: found.append(given),
+    }
+    for place, stand_in in stand_ins.items():
+        monkeypatch.setattr(f"validation.{place}", stand_in)
+    done = typed("compare", *CASE, "x.csv", "--out", "o.pdf", "--figure", "f.svg")
+    assert (done.returncode, found) == (1, [Path("o.pdf"), (True, Path("f.svg"))])
+
+
+def test_a_solver_on_several_ranks_is_told_with_their_number(monkeypatch):
+    found = []
+
+    def stopped(adapter, case, full, *rest):
+        found.append((adapter.name, full))
+        return Run(Outcome.OVERFLOW)
+
+    monkeypatch.setattr(run, run._run_case.__name__, stopped)
+    done = typed("solve", *CASE, "--solver", "fenicsx", "--ranks", "2", "--full")
+    assert done.stdout.startswith("figures-3-4 fenicsx:2: overflow: ") and found.pop() == ("fenicsx:2", True)
+    prepared = SimpleNamespace()
+    run._watch(lambda *given: found.append(given[:2]), prepared)
+    prepared.progress(0.371)
+    assert found == [(37, 100)]
 
 
 def test_answers_that_are_kept_and_written_as_a_pdf_are_named(monkeypatch, tmp_path):

@@ -61,7 +61,8 @@ def test_lines_that_an_action_executes_are_counted():
         first = 1
         return first
 
-    assert measure.lines_of(action) == measure.lines_of(action) == 2
+    before = sys.gettrace()
+    assert measure.lines_of(action) == measure.lines_of(action) == 2 and sys.gettrace() is before
 
 
 def test_processes_threads_and_one_process_give_the_same_rows(scene, tmp_path):
@@ -295,12 +296,13 @@ def test_files_and_sources_that_cannot_be_read_have_no_key(scene, monkeypatch):
 
 
 def test_a_pair_without_histories_has_no_value_and_numbers_without_meaning_are_undefined(tmp_path, monkeypatch):
-    gate = Gate("s", ("dda", "bar"), "displacement.l2", 0, 1, "r")
+    gate = Gate("s", ("dda", "bar"), "displacement.l2", 0, 1, "r", until=0.15)
     rows = {("s", solver): made_row(solver, {}, "s") for solver in gate.pair}
     assert evaluate(gate, Finished(rows, Results(tmp_path))).value is None
     for solver, size in (("dda", 1.0), ("bar", 2.0)):
         Results(tmp_path).append(rows["s", solver], made_history(0.1, [size, size]))
-    assert evaluate(gate, Finished(rows, Results(tmp_path))).value == pytest.approx(0.5)
+    verdict = evaluate(gate, Finished(rows, Results(tmp_path)))
+    assert (verdict.value, verdict.why) == (pytest.approx(0.5), "")
     monkeypatch.setattr(judge_module, "pair", lambda *given: 1 / 0)
     assert evaluate(gate, Finished(rows, Results(tmp_path))).value == "undefined"
 

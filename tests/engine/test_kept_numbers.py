@@ -18,9 +18,6 @@ from validation.runs.run import Outcome, Run
 from validation.scenes.scene import load_scene
 from validation.solvers.registry import get_solver
 
-# ---- metrics of one run -------------------------------------------------------------------------------------------
-
-
 # ---- rows ---------------------------------------------------------------------------------------------------------
 
 

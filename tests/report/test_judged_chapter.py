@@ -50,7 +50,10 @@ def boxes():
         Criterion("rebound", Status.FAIL, 0.5, 0.01, 0.3, "of the speed", 0.0),
         Criterion("sinking", Status.PASS, 0.0, 0.0, 0.3, "of the side", 0.3),
     )
-    numbers = (Quantity("rebound", "m/s", 0.7, 1.4, (1.386, 1.414)), Quantity("sinking", "1", None, 0.0, (0.0, 0.01)))
+    numbers = (
+        Quantity("rebound", "m/s", 0.7071, 1.4, (1.386, 1.414)),
+        Quantity("sinking", "1", None, 0.0, (0.0, 0.01)),
+    )
     time = 0.1 * np.arange(1, 4)
     history = History(time, {name: 0.0 * time if name == "box.angle" else time for name in one.columns})
     return JudgedAnswer(
@@ -59,11 +62,11 @@ def boxes():
 
 
 def partial():
-    """Return an answer that withholds a column, whose scheme would pass at a quarter of the step."""
+    """Return an answer that withholds a column, whose scheme would pass at a seventh of the step."""
     one = judged()
     asked = replace(one.judgement.criteria[0], status=Status.NOT_REPORTED, error=None)
     criteria = (replace(asked, reason="it is asked for"), *one.judgement.criteria[1:])
-    why = Cause("a scheme.", ("scheme",), {"gg": 0.5}, passing_step=one.problem.scene.time.step / 4)
+    why = Cause("a scheme.", ("scheme",), {"gg": 0.5}, passing_step=one.problem.scene.time.step / 7)
     judgement = replace(one.judgement, criteria=criteria, quantities=())
     return replace(one, judgement=judgement, cause=why, warnings=("It does not repeat.",))
 
@@ -85,7 +88,7 @@ def test_what_a_verdict_rests_on_is_said(kept, kept_figures, drawn, tmp_path):
     assert chapter.as_data(partial()) == {
         "verdict": "PARTIAL",
         "not_reported": ["displacement_m"],
-        "cause": {"sentence": "a scheme.", "ids": ["scheme"], "values": {"gg": 0.5}, "passing_step_s": 0.0005},
+        "cause": {"sentence": "a scheme.", "ids": ["scheme"], "values": {"gg": 0.5}, "passing_step_s": 0.002 / 7},
         "criteria": [
             {"name": name, "verdict": str(status), "error": error, "allowed": allowed, "until_s": until,
              "within_until_s": within, "reason": reason}
@@ -102,7 +105,7 @@ def test_what_a_verdict_rests_on_is_said(kept, kept_figures, drawn, tmp_path):
     assert data["numbers"][0] == {
         "name": "rebound",
         "unit": "m/s",
-        "value": 0.7,
+        "value": 0.707,
         "exact": 1.4,
         "low": 1.39,
         "high": 1.41,

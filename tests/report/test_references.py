@@ -7,7 +7,7 @@ from pypdf import PdfReader
 
 from validation.report.blocks import Paragraph, References
 from validation.report.names import quoted
-from validation.report.references import PAPER, references
+from validation.report.references import PAPER, named, references
 from validation.report.render.html import page
 from validation.report.render.pdf import typeset
 from validation.suite.folders import sources_of, study_folders, study_names
@@ -38,3 +38,6 @@ def test_a_key_is_a_number_where_the_sources_are_listed(lists, tmp_path):
 def test_the_site_links_keys_and_nothing_else():
     text = page("t", [Paragraph("<b> @kane1999 @me2020 " + quoted("@kane1999"))])
     assert '&lt;b&gt; <a href="references.html#kane1999">Kane 1999</a> @me2020 @kane1999</p>' in text
+    assert (
+        named("@feng2017, @shi1985, @doyen2011") == "Feng and others 2017, Shi and Goodman 1985, Doyen and others 2011"
+    )

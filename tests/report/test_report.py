@@ -13,8 +13,8 @@ from validation.report.blocks import FigureBlock, Paragraph, Table, TableColumn
 from validation.report.book import build, write_figures
 from validation.report.chapters import answers as chapters_answers
 from validation.report.chapters import gates as chapters_gates
+from validation.report.chapters import ledger, summary
 from validation.report.chapters import scene as chapters
-from validation.report.chapters import summary
 from validation.report.chapters import text as chapters_text
 from validation.report.chapters.data import groups_of_studies
 from validation.report.front import front_pages
@@ -67,7 +67,7 @@ def test_figures_are_written_as_svg_and_png(small, tmp_path, monkeypatch):
     assert {(p.suffix, p.read_bytes()[:4]) for p in paths} == {(".png", PNG), (".svg", b"<?xm")}
 
 
-def test_bad_requests_name_what_is_wrong(small, tmp_path):
+def test_bad_requests_name_what_is_wrong(small, tmp_path, monkeypatch):
     with pytest.raises(InputError, match=r"mine.*got 'core'") as unknown:
         write_figures(small, tmp_path, ["core"])
     with pytest.raises(InputError) as empty:
@@ -76,6 +76,14 @@ def test_bad_requests_name_what_is_wrong(small, tmp_path):
         build(small, tmp_path / "absent" / "r.pdf")
     sources = [error.value.source for error in (empty, lost)]
     assert unknown.value.field == "study" and sources == [tmp_path / "nowhere", tmp_path / "absent" / "r.pdf"]
+    small.write_json("studies/old.json", {"study": "other"})
+    monkeypatch.setattr(book, "chapter_blocks", lambda *_: [])
+    monkeypatch.setattr(book, "write_document", lambda out, blocks: blocks(tmp_path))
+    (callout,) = [block for block in build(small, tmp_path, ["old", "mine"]) if "'other'" in str(block)]
+    assert callout.tone == "fail"
+    for ask, place, words in ((build, "r", "'other'"), (write_figures, "results/rows.jsonl", "cannot be made")):
+        with pytest.raises(InputError, match=words):
+            ask(small, tmp_path / place, ["old"])
     with pytest.raises(ValueError, match=r"^rows: .*got 3$"):
         Table((TableColumn("a"), TableColumn("b")), (("1", "2", "3"),))
 
@@ -110,7 +118,7 @@ def taken(seconds):
 
 NUMBERS = [  # function, value, text
     (band, (5.0, 5.0), "5 … 5"), (band, (-0.0053065, -0.0053055), "−0.0053065 … −0.0053055"),
-    (band, (0, 1e-12), "0 … 1×10⁻¹²"), (band, (344.561 - 3e-9, 344.561 + 3e-9), "344.561 ± 3×10⁻⁹"),
+    (band, (0, 1e-12), "0 … 1×10⁻¹²"), (band, (344.561 - 3.4e-9, 344.561 + 3.4e-9), "344.561 ± 3.4×10⁻⁹"),
     (told, ["PASS"], "its one gate passes"), (told, ["FAIL"], "its one gate fails"),
     (taken, (1.204, 2.05), "3.3"), (taken, (None,), chapters_answers.DASH),
     (told, ["NOT RUN"], "its one gate did not run"), (told, ["FAIL", "PASS"], "1 of 2 gates fails"),
@@ -125,9 +133,7 @@ def test_numbers():
 @pytest.mark.parametrize(
     ("scenes", "labels"),
     [
-        (load_scene("figures-3-4").expand(), ["dt = 0.01 s", "dt = 0.002 s", "dt = 0.001 s"]),
         (load_scene("figure-7").expand(), ["p = 1E", "p = 10E", "p = 100E"]),
-        (load_scene("figure-8").expand(), ["α = 0.25, δ = 0.5", "α = 0.5, δ = 1"]),
         ([MANY.with_values({"time.steps": n}, label=True) for n in (10, 20)], ["steps = 10", "steps = 20"]),
         (
             [MANY.with_values({"contact.stiffness": p, "load.pressure": q}, label=True) for p, q in PRESSED],
@@ -153,4 +159,10 @@ def test_what_a_reference_is_worth_is_told(kept):
         case = made_case(scene, {name: {} for name in (*solvers, reference)})
         pairs = [between(scene.name, solver, reference, displacement_l2=0.1) for solver in solvers]
         told.append(Paragraph(summary.reference_note(made_group(case, comparisons=pairs), case)))
+    code = between(scene.name, "dda", "dda-textbook", displacement_l2=1e-7, pressure_l2=0.3)
+    form = between(scene.name, "dda", "bar", displacement_l2=0.04, pressure_l2=0.03)
+    for pairs in ([code], [form], [form, code]):
+        told.append(Paragraph(ledger.headline([made_group(case, comparisons=pairs)])))
+    told.append(Paragraph(chapters.conclusion(made_group(case, comparisons=[form | {"window": 0.0}]))))
+    assert chapters.slide_figure(made_group(case)) is None
     kept("references", told)

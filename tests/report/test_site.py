@@ -91,8 +91,11 @@ def test_a_page_for_each_study_and_scene_and_no_link_leads_nowhere(site):
     studies = [picture.replace("scene-", "study-") for picture in scenes]
     assert sorted(pictures) == sorted(scenes + studies)
     assert "article 7480937" in files["index.html"] and 'id="feng2017"' in files["references.html"]
-    assert "FAIL" in files["index.html"] and REASON in files["index.html"]
+    assert all(words in files["index.html"] for words in ("FAIL", REASON, '"../index.html"'))
     titles = [unescape(re.search("<title>([^<]*)", text)[1]) for _, text in sorted(files.items()) if "<title>" in text]
+    for word, stem in (("pass", "passing"), ("fail", "fail---ing")):
+        judged = {name for name, text in files.items() if f'class="verdict {word}"' in text and name != "index.html"}
+        assert judged == {f"study-{stem}.html", f"scene-{stem}.html"}
     assert titles[3:] == [f"{FAILING}: plain", f"passing: {HOSTILE}", "plain", HOSTILE]
 
 
@@ -217,8 +220,9 @@ def test_every_kind_of_block_has_its_form_in_every_renderer(kept_text, tmp_path)
     body, _, sources = html.partition("<body>")[2].partition('<ul class="references">')
     bathe = sources.partition('"bathe2005">')[2].splitlines()[:2]
     kept_text("blocks", [*body.splitlines(), *bathe, str([*map(int, pdf.kept_with_next(BLOCKS))])])
-    broken = [Heading("a"), Paragraph("b"), kinds.PageBreak(), Paragraph("c")]
-    assert pdf.kept_with_next(broken) == [False] * 4
+    words, first, second = Paragraph("words"), Heading("a"), Heading("b", 2)
+    others = [first, words, kinds.PageBreak(), words, words, BLOCKS[4], first, words, second, words, BLOCKS[11], words]
+    assert [*map(int, pdf.kept_with_next(others))] == [0, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 0]
 
 
 def test_blocks_stand_apart_in_a_terminal_and_a_callout_close_to_what_it_is_of():

@@ -47,6 +47,7 @@ def table(tmp_path):
             cases.append((case, row, history))
     names = [case.name for case, *_ in cases]
     data = {"curves": [{"kind": "a", "x": [1.0, 2.0], "y": [3.0, None]}, {"kind": "b", "x": [0.0], "y": [1.0]}]}
+    data["remarks"] = ["mind"]
     pairs = [between(names[0], "dda", "fem", displacement_l2=0.25)]
     kept_study(results, cases, pairs, derived=DERIVED, data=data)
     return StudyTable(results, results.manifest("made"))
@@ -57,7 +58,8 @@ TABLE = tomllib.loads(Path(__file__).with_name("queries.toml").read_text(encodin
 
 def test_a_query_looks_up_what_it_names_and_a_column_picks_one_of_some_lines(table):
     for row in TABLE["query"]:
-        assert [told(table.value(line, row["of"])) for line in table.lines(row["query"])] == row["values"], row
+        lines = table.lines(row.get("query", {"where": {"time.step": 0.01}}))
+        assert [told(table.value(line, row["of"])) for line in lines] == row["values"], row
     for row in TABLE["column"]:
         assert told(table.picked(table.lines({}), row["column"])) == row["value"], row
 
@@ -111,6 +113,9 @@ parts = [
     { heading = "Never", table = "nothing" },
     { text = "said", when = ["nowhere"] },
     { table = "measured" },
+    { heading = "Never", table = "measured", where = { "time.step" = 0.002 } },
+    { text = "judged" },
+    { section = "figures-3-4", columns = [], without = "truth" },
     { maps = "steps" },
     { maps = "nothing" },
     { picture = "scenes" },
@@ -139,10 +144,11 @@ solver = "bar"
 file = "scenes.svg"
 caption = "As drawn."
 height = 31.0
-scenes = { "figures-3-4*" = "First", "nowhere" = "Never" }
+scenes = { "figures-3-4*" = "First", "nowhere" = "Never", "*0.002]" = "Second" }
 [picture.nothing]
 scenes = { "nowhere" = "Never" }
 [text]
+judged = "{gates}"
 said = "At {coarse} ms: {cases}."
 said-question = "When?"
 missing-question = "Why?"
@@ -154,6 +160,9 @@ value = "time.step"
 pick = "most"
 factor = 1e3
 form = "g"
+[number.fine]
+value = "time.step"
+pick = "least"
 [number.absent]
 value = "closed: absent"
 [list.cases]
@@ -175,6 +184,7 @@ columns = [
 ]
 [table.measured]
 measured = true
+notes_of = "remarks"
 columns = [{ title = "dt", of = "time.step", form = "g" }, { title = "r", of = "closed: ratio", digits = 2 }]
 [table.nothing]
 of = "nowhere"
@@ -192,6 +202,7 @@ lines = [
     { x_ends = [0.0, 1.0], y = "closed: ratio", name = "level" },
 ]
 [panel.b]
+marks = { here = "fine", "{coarse} ms" = "coarse", there = "absent" }
 x_ticks = [[1.0, "one"]]
 [[panel.b.lines]]
 where = { "time.step" = 0.01 }
@@ -220,6 +231,7 @@ name = "{each}"
 each = "time.step"
 x = "time.step"
 y = "dda displacement.static"
+note_of.of = "time.step"
 looks = { "0.01" = { color = "#222222" } }
 name = "at {each}"
 """

@@ -1,5 +1,6 @@
 """What is kept and told of runs: results directories, contacts, columns, names, texts, files and what is absent."""
 
+import fcntl
 import itertools
 import os
 import platform
@@ -12,11 +13,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from oracles.made_cases import made_history, made_row
+from oracles.stand_ins import numbers_in, summed
 
 from validation.errors import InputError
-from validation.runs import columns, extras, files, provenance, strict, tables, units
+from validation.runs import columns, extras, files, provenance, strict, tables, text, units
 from validation.runs.case_name import CaseName, scene_of
 from validation.runs.defects import Defects, DefectsError, Place
+from validation.runs.modes import Mode
 from validation.runs.regular import kind_of, regular
 from validation.runs.results import Results
 from validation.runs.run import Outcome, Run
@@ -81,6 +84,8 @@ def test_verdicts_of_a_study_take_the_place_of_its_own(tmp_path):
     assert "low <= high" in refusal(results.verdicts)
     results.write_verdicts("a", [verdict("a", "z")])
     assert len(results.verdicts()) == 3
+    with results._locked(), open(tmp_path / ".lock") as other, pytest.raises(BlockingIOError):
+        fcntl.flock(other, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
 def test_columns_have_units_words_and_an_order():
@@ -101,6 +106,17 @@ def test_headers_are_recognised_with_their_units():
     found = [units.recognised(header, known) for header in headers]
     assert [one and one[0] for one in found] == [*3 * ["displacement"], None, "time", None, None]
     assert [one[1] for one in found if one] == pytest.approx([1.0, 1e-3, 1e-2, 1e-3])
+    assert summed(numbers_in(units.OTHERS)) == pytest.approx(653.37079974, abs=1e-6)
+
+
+def test_samples_of_a_damped_motion_show_its_alias():
+    for xi, is_beyond in ((0.4, True), (0.75, False)):
+        decay, turn = 10 * xi, 10 * np.sqrt(1 - xi**2)
+        root = np.exp(0.4 * complex(-decay, turn))
+        mode = Mode(10.0, 1.0, (root, root.conjugate()), sampled=True)
+        folded = pytest.approx(np.hypot(decay, 5 * np.pi - turn))
+        assert mode.alias(0.4) == (folded if is_beyond else None)
+    assert replace(mode, eigenvalues=(0.0, 0.5)).alias(0.4) is None
 
 
 def test_names_of_cases_are_taken_apart_as_they_are_put_together():
@@ -116,7 +132,7 @@ def test_json_is_strict(tmp_path):
     for refused in ("NaN", "1e999", str(limit + 1), "9" * 21, "[" * 100_000):
         with pytest.raises(ValueError, match=r"number|nested"):
             strict.loads(refused)
-    assert strict.defect_of({"a": 1}, dict[str, str]).startswith("a: ") and strict.defect_of([1], list[int]) is None
+    assert strict.defect_of({"a": 1}, dict[str, str]).startswith("a: inp") and strict.defect_of([1], list[int]) is None
     (tmp_path / "bytes").write_bytes(b"\xff")
     assert refusal(strict.read, tmp_path / "bytes", list, "") == "must be UTF-8 text"
     assert refusal(regular, tmp_path / "bytes", 0.5) == "must be at most 0 bytes"
@@ -206,17 +222,24 @@ UNREADABLE = [  # bytes of a table, and where and what the first one is that is 
 
 
 def test_cells_are_found_with_their_places():
-    rows = tables.rows_of('time , "x ""2"" "," , 3"\n\n1;"2";;\n  4   5\n" 6 ",""\n')
-    assert [[cell.text for cell in row] for row in rows] == [["time", 'x "2"', ", 3"], ["1", "2"], ["4", "5"], ["6"]]
+    rows = tables.rows_of('time , "x ""2"" "," , 3"\n\n1;"2";;\n  4   5\n" 6 ",""\n7 "\n8', 5)
+    assert [[cell.text for cell in row] for row in rows] == [
+        ["time", 'x "2"', ", 3"],
+        ["1", "2"],
+        ["4", "5"],
+        ["6"],
+        ["7", '"'],
+    ]
     assert [(cell.line, cell.column) for row in rows for cell in row] == [
         *((1, 1), (1, 8), (1, 19)),
         *((3, 1), (3, 3)),
         *((4, 3), (4, 7)),
-        (5, 1),
+        *((5, 1), (6, 1), (6, 3)),
     ]
 
 
 def test_bytes_that_are_no_text_have_a_place(tmp_path):
+    assert text.shown("\x1bé\u00a0") == "\\x1bé\u00a0"
     path = tmp_path / "t.csv"
     for content, place, value, advice in UNREADABLE:
         path.write_bytes(content)

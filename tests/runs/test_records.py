@@ -2,7 +2,7 @@
 
 import pytest
 
-from validation.runs.records import sound, unique
+from validation.runs.records import _ordered, sound, unique
 
 
 def judged(verdict, value, band=(1.0, 2.0), name="g"):
@@ -19,7 +19,7 @@ def test_a_verdict_that_its_value_does_not_bear_out_is_refused(verdict, value):
 
 def test_two_verdicts_of_one_gate_are_refused():
     two = [judged("PASS", 1.5), judged("PASS", 1.5, name="h")]
-    assert unique(two) == two
+    assert unique(two) == two and _ordered([1.5, 1.5])
     with pytest.raises(ValueError, match=r"^g .* s$"):
         unique([*two, judged("FAIL", 3.0)])
     with pytest.raises(ValueError, match=r"^g{200} .* s{200}$"):

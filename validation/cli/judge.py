@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
@@ -112,7 +112,6 @@ def judge(
             if value:
                 raise InputError("excludes --study", field=option, value=value)
         _judge_by_gates(source, study, verbose, as_json)
-        return
     if out is not None:
         extras.require("--out", *(extras.PDF if out.suffix == ".pdf" else extras.SITE))
     if assignments and not asked:
@@ -323,7 +322,7 @@ def check_loads(source: str) -> None:
             raise InputError(f"cannot be loaded: {reason}", field="SOLVER", value=repr(source))
 
 
-def _judge_by_gates(source: str, studies: Sequence[str], verbose: bool, as_json: bool) -> None:
+def _judge_by_gates(source: str, studies: Sequence[str], verbose: bool, as_json: bool) -> NoReturn:
     """Run the gates of studies with a solver in the place of dda, and print what they tell."""
     import tempfile
 

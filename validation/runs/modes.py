@@ -43,9 +43,9 @@ class Mode:
         """Frequency [rad/s] that samples every `step` [s] show of a motion beyond Nyquist's pi / dt, None below it."""
         if not self.sampled or 0 in self.eigenvalues or self.frequency * step <= math.pi:
             return None
-        decay = -sum(math.log(abs(value)) for value in self.eigenvalues) / 2  # of the motion in a step [1]
-        turned = math.sqrt(max(0.0, (self.frequency * step) ** 2 - decay**2))
-        return abs(cmath.log(self.eigenvalues[0])) / step if turned > math.pi else None
+        decay = sum(math.log(abs(value)) for value in self.eigenvalues) / 2  # of the motion in a step, negative [1]
+        turned = (self.frequency * step) ** 2 - decay**2
+        return abs(cmath.log(self.eigenvalues[0])) / step if turned > math.pi**2 else None
 
 
 def contact_index(modes: Sequence[Mode]) -> int | None:

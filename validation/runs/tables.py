@@ -7,6 +7,7 @@ or D; quotes; comments after # or %, and lines that begin with // or !; a byte-o
 from __future__ import annotations
 
 import io
+import itertools
 import math
 import re
 from collections.abc import Sequence
@@ -70,14 +71,9 @@ def read_text(path: Path, largest: float = math.inf) -> str:
 
 def rows_of(text: str, most: int | None = None) -> list[Row]:
     """Return the rows of a text that hold a cell, the header among them; at most so many are read."""
-    rows = []
-    for number, line in enumerate(io.StringIO(text, newline=None), start=1):
-        cells = _cells(_COMMENT.sub("", line.rstrip("\n")), number)
-        if cells:
-            rows.append(cells)
-        if len(rows) == most:
-            break
-    return rows
+    lines = enumerate(io.StringIO(text, newline=None), start=1)
+    rows = (_cells(_COMMENT.sub("", line.rstrip("\n")), number) for number, line in lines)
+    return list(itertools.islice(filter(None, rows), most))
 
 
 def _cells(line: str, number: int) -> Row:

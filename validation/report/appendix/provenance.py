@@ -69,12 +69,10 @@ def cost_table(results: Results, manifests: Sequence[Manifest]) -> Table:
     lines = []
     for solver, rows_by_key in rows_by_solver.items():
         work: Counter[str] = Counter()
-        unknowns = 0
-        seconds = 0.0
         for row in rows_by_key.values():
             work.update(row.work)
-            unknowns = max(unknowns, row.work.get("unknowns", 0))
-            seconds += sum(row.seconds.values())
+        unknowns = max(row.work.get("unknowns", 0) for row in rows_by_key.values())
+        seconds = sum(sum(row.seconds.values()) for row in rows_by_key.values())
         counts = (len(rows_by_key), unknowns, work["factorisations"], work["solves"], work["steps"])
         lines.append((solver, *map(str, counts), plain(seconds, 3)))
     titles = ("Runs", "Unknowns, most", "Factorisations", "Solves", "Steps", "Seconds")

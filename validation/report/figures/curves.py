@@ -131,9 +131,9 @@ def common_range(panels: HistoryPanels, column: str) -> tuple[float, float]:
         values = np.append(values, 0.0)
     rounding = max((kind.rounding for kind in kinds), default=0.0)
     if not from_zero:
-        half = max(LEAST_MOVED * np.abs(values).max() / 2, (values.max() - values.min()) / 2)
+        half = max(LEAST_MOVED * np.abs(values).max() / 2, (values.max() - values.min()) / 2) or 1.0
         middle = (values.max() + values.min()) / 2
-        return (float(middle - half), float(middle + half)) if half > 0 else (-1.0, 1.0)
+        return float(middle - half), float(middle + half)
     if np.abs(values).max() < rounding:
         return -rounding, rounding  # what does not move is at rest, and not a line of rounding errors
     limit = 6 * max((abs(p.static[column]) for p in panels if p.static.get(column)), default=math.inf)
