@@ -123,5 +123,5 @@ def test_a_phenomenon_is_run_and_judged_and_who_cannot_answer_is_told(few, finis
     verdicts, (remark,) = verify(dominoes, Results(tmp_path), "dda-textbook")
     assert [str(verdict.status) for verdict in verdicts] == ["NOT RUN"] * 4
     assert remark.split(": ")[:3] == ["4 of 4 runs", "dda-textbook", str(Outcome.NOT_APPLICABLE)]
-    bouncing = replace(phenomena(["impacts"])[0], scenes=("bouncing-mass",))  # of whose four gates one is on `dda`
+    bouncing = replace(phenomenon("impacts"), scenes=("bouncing-mass",))  # of whose four gates one is on `dda`
     assert len(bouncing.gates) == 4 and len(verify(bouncing, Results(tmp_path), "dda-textbook")[0]) == 1

@@ -72,12 +72,12 @@ def values_in(data):
 
 
 def odd(case):
-    """Return a case with odd numbers in place of all that are not swept; p/E and what topples stay."""
+    """Return a case with odd numbers in place of all that are not swept; p/E, what topples and what slides stay."""
     values = {}
     for section, keys in case.definition().items():
         if section not in PLAIN and isinstance(keys, dict):
             values |= {f"{section}.{key}": value for key, value in keys.items() if isinstance(value, float) and value}
-    kept = {"block.height", "block.young", *case.name.replace("[", ",").replace("=", ",").split(",")}
+    kept = {"block.height", "block.young", "load.slope", *case.name.replace("[", ",").replace("=", ",").split(",")}
     values = {key: (1 - 0.1 * share(key, "odd")) * value for key, value in values.items() if key not in kept}
     if side := values.pop("block.side", None):
         values |= {"block.width": 1.1 * side, "block.height": 0.83 * side}
