@@ -51,6 +51,8 @@ def test_what_a_band_is_about_and_the_way_to_its_edges():
 def test_inside_passes_and_what_has_no_number_fails():
     for value, status in ((0.0, "PASS"), (4.0, "PASS"), (-1e-9, "FAIL"), (4.001, "FAIL")):
         assert (judge(gate(), value).status, judge(gate(), value).why) == (status, ""), value
+    told = judge(gate(1e-6 / 3), 1.23456).record("t")
+    assert (told["value"], told["margin"], told["band"]) == (1.235, 0.691, [3.33333333333e-07, 4.0])
     for value in ("undefined", None, math.nan):
         told = judge(gate(), value)
         assert told.status is Status.FAIL and told.why

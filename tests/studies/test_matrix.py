@@ -1,23 +1,19 @@
 """The verification matrix: every gate can be looked up, a phenomenon is found by its name and judges any solver."""
 
 import json
-import tomllib
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 from conftest import typed
 
 import validation.studies
 from validation.errors import InputError
-from validation.gates.gate import Gate
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.suite import matrix
 from validation.suite.folders import study_folders
 from validation.suite.matrix import phenomena, phenomenon, unstated, verify
 
-MARGINS = tomllib.loads(Path(__file__).with_name("margins.toml").read_text(encoding="utf-8"))["margin"]
 STUDY = """
 [study]
 name = "added"
@@ -88,19 +84,6 @@ def test_a_name_of_none_or_several_is_refused(text, advice, few):
         phenomenon(text)
     assert refusal.value.field == "PHENOMENON" and advice in str(refusal.value.advice)
     assert typed("verify", text).returncode == 2
-
-
-@pytest.mark.parametrize("row", MARGINS, ids=str)
-def test_the_margin_is_what_is_left_of_the_way_from_target_to_edge(row):
-    gate = Gate("s", ("dda",), "m", *row["band"], "r")
-    assert gate.target == pytest.approx(row["target"], abs=1e-11)
-    margin = gate.margin(row["value"])
-    assert ("none" if margin is None else pytest.approx(margin)) == row["margin"]
-
-
-def test_the_kind_of_a_reference_is_one_of_four():
-    with pytest.raises(ValueError, match="reference_kind"):
-        Gate("s", ("dda",), "m", 0, 1, "r", "guess")
 
 
 @pytest.mark.long
