@@ -137,7 +137,7 @@ def numbers(study, table):
     generated = [scene.definition() for scene in study.scenes if not isinstance(scene, str)]
     scenes = json.loads(json.dumps(generated).replace(str(ROOT), ""))
     rows = [part for row in study.recipes.values() for part in told_by_row(row)]
-    found = {"rows": summed(rows), "gates": summed(gates), "scenes": summed(numbers_in(scenes)) if scenes else 0.0}
+    found = {"rows": summed(rows), "gates": summed(gates), "scenes": 1e3 * summed(numbers_in(scenes)) if scenes else 0.0}
     found |= {"data": summed(values_in(dict(study.data()))), **rows_of(study, table)}
     return {name: value for name, value in found.items() if value}
 
@@ -283,7 +283,7 @@ def test_other_blocks_are_solved_in_the_scenes_that_they_were():
     others = [("cost-paper", {"load.ramp": 0.01}), ("cost-opening", {"block.poisson": 0.25}), ("cost-opening", {})]
     ladders = [odd, *(Ladder.of(load_scene(name).with_values(values)) for name, values in others)]
     references = [ladder.scene(ladder.reference).definition() for ladder in ladders]
-    found = {"odd": summed(numbers_in([scene.definition() for scene in odd.scenes()]))}
+    found = {"odd": 1e3 * summed(numbers_in([scene.definition() for scene in odd.scenes()]))}
     data = [scene.definition() for scene in gates.START.scenes]
     assert_kept(
         KEPT, "others", found | {"references": summed(numbers_in(references)), "data": summed(numbers_in(data))}
