@@ -196,7 +196,7 @@ def closed(case: Scene) -> Metrics:
     """Return the drag [1/s], the acceleration [m/s2] and the displacement at the end [m] in closed form."""
     acceleration = friction.sliding_acceleration(case)
     displacement, _ = friction.free_motion(case, acceleration)
-    return {"drag": friction.drag_rate(case) + 0.0, "acceleration": acceleration, "free": displacement[-1]}
+    return {"drag": abs(friction.drag_rate(case)), "acceleration": acceleration, "free": displacement[-1]}
 
 
 def beside_closed(case: Scene, dda: Row) -> Metrics:
