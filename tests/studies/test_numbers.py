@@ -81,6 +81,9 @@ def odd(case):
     values = {key: (1 - 0.1 * share(key, "odd")) * value for key, value in values.items() if key not in kept}
     if side := values.pop("block.side", None):
         values |= {"block.width": 1.1 * side, "block.height": 0.83 * side}
+    plane = case.definition().get("plane", {})
+    if "glue" not in plane:  # whose blocks are of one kind
+        values |= {f"plane.block.{n}.density": 2500.0 - 100 * n for n in range(len(plane.get("block", ())))}
     return case.with_values(values).model_copy(update={"name": case.name})
 
 
@@ -137,7 +140,7 @@ def numbers(study, table):
     generated = [scene.definition() for scene in study.scenes if not isinstance(scene, str)]
     scenes = json.loads(json.dumps(generated).replace(str(ROOT), ""))
     rows = [part for row in study.recipes.values() for part in told_by_row(row)]
-    found = {"rows": summed(rows), "gates": summed(gates), "scenes": 1e3 * summed(numbers_in(scenes)) if scenes else 0.0}
+    found = {"rows": summed(rows), "gates": summed(gates), "scenes": 1e3 * summed(numbers_in(scenes))}
     found |= {"data": summed(values_in(dict(study.data()))), **rows_of(study, table)}
     return {name: value for name, value in found.items() if value}
 
