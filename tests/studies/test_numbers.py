@@ -158,7 +158,9 @@ def test_gates_for_users_solvers_are_what_they_were(tmp_path):
         edges += [gate.scene, gate.metric, gate.low, gate.high, gate.until or 0.0]
     blocks = [made(name, tmp_path) for name, scene in SCENES.items() if "column" not in scene]
     kinds = summed(kind for scene in blocks for kind in gates.unseen([scene]))
-    assert_kept(KEPT, "own-solver", {"gates": summed(edges), "kinds": kinds})
+    loaded = [scene for scene in blocks if scene.load.pressure]
+    misread = summed(block_data.is_misread(scene, one) for scene in loaded for one in block_data.MISREADINGS)
+    assert_kept(KEPT, "own-solver", {"gates": summed(edges), "kinds": kinds, "misread": misread})
 
 
 TELLING = re.compile(r"\S*\d\S*|(?<=\n)\w+|" + "|".join(gates.GROUPS))  # a sentence may be reworded
