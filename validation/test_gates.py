@@ -5,6 +5,7 @@ With ``--dda-solver module:attribute`` that solver takes the place of `dda`, and
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
@@ -15,10 +16,17 @@ from validation.entry.siblings import shadowed
 if sentence := shadowed():  # before the imports that would fail on it
     pytest.exit(sentence, returncode=2)
 
-from validation.gates.gate import Status
+from validation.gates.gate import Gate, Status
 from validation.runs.results import Results
-from validation.suite.own_solver.gates import applying, gates
+from validation.suite.folders import get_study, judged_studies
+from validation.suite.own_solver.gates import applying
 from validation.suite.own_solver.session import GateRuns, Session, plain
+
+
+@functools.cache
+def gates() -> Mapping[str, tuple[str, Gate]]:
+    """Return every gate of the suite that the tests judge: id to study and gate."""
+    return {gate.id: (study, gate) for study in judged_studies() for gate in get_study(study).gates()}
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
@@ -33,7 +41,7 @@ def runs(finished_cases: Path, pytestconfig: pytest.Config) -> GateRuns:
     """Return the cases run in this session, filled as gates ask for them, by the suite's own solvers or a user's."""
     user = pytestconfig.getoption("--dda-solver", None)
     results = Results(finished_cases)
-    return GateRuns(results) if user is None else Session(user, results)
+    return GateRuns(results, studies=judged_studies()) if user is None else Session(user, results)
 
 
 @pytest.mark.validation

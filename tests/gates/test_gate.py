@@ -14,7 +14,7 @@ def gate(low=0.0, high=4.0, **more):
 
 def test_a_band_that_is_none_is_refused():
     for fault in (
-        {"low": 4.5},
+        {"low": math.nan},
         {"reference_uncertainty": 4.5},
         {"reference_kind": "guess"},
         {"reason": ""},
@@ -33,7 +33,7 @@ def test_what_a_band_is_about_and_the_way_to_its_edges():
         (2.0, 6.0, 5.0, 4.0, 0.5, 0.5),
         (2.0, 6.0, 1.0, 4.0, 0.5, -0.5),
         (-3.0, 1.0, -1.0, 0.0, 3.0, 2 / 3),
-        (-6.0, -2.0, -5.0, -4.0, 0.5, 0.5),
+        (-0.6, -0.2, -0.5, -0.4, 0.5, 0.5),
         (-2.0, 0.0, 0.5, 0.0, 2.0, None),
         (-2.0, 0.0, 0.0, 0.0, 2.0, None),
         (0.0, 4.0, 0.0, 0.0, 4.0, 1.0),
@@ -51,6 +51,8 @@ def test_what_a_band_is_about_and_the_way_to_its_edges():
 def test_inside_passes_and_what_has_no_number_fails():
     for value, status in ((0.0, "PASS"), (4.0, "PASS"), (-1e-9, "FAIL"), (4.001, "FAIL")):
         assert (judge(gate(), value).status, judge(gate(), value).why) == (status, ""), value
+    told = judge(gate(1e-6 / 3), 1.23456).record("t")
+    assert (told["value"], told["margin"], told["band"]) == (1.235, 0.691, [3.33333333333e-07, 4.0])
     for value in ("undefined", None, math.nan):
         told = judge(gate(), value)
         assert told.status is Status.FAIL and told.why

@@ -5,11 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from validation.engine.horizon import shadow
 from validation.metrics.catalogue import solo
 from validation.metrics.measurable import Measurable
+from validation.metrics.pairs import relative_max
 from validation.metrics.values import NOT_REPORTED, UNDEFINED
 from validation.runs.contact import ContactRecord
 from validation.runs.history import History
+from validation.scenes.scene import load_scene
+from validation.solvers.registry import get_solver, solve
 
 STEP = 0.5
 ONES = np.ones(4)
@@ -96,3 +100,9 @@ def test_what_is_not_reported_or_has_no_meaning_says_so():
     flying = replace(MADE, force=0 * MADE.force, rebounds=())
     assert measured(flying)["contact.restitution"] == measured(flying)["contact.restitution_mean"] == UNDEFINED
     assert measured(replace(MADE, input_energy=0.0))["energy.rise"] == UNDEFINED
+
+
+def test_another_code_is_apart_by_little_more_than_rounding():
+    scene = load_scene("cost-opening").with_values({"time.steps": 60})
+    other = shadow(get_solver("dda"), scene, False)
+    assert 1e-14 < relative_max(other.displacement, solve(scene, "dda").displacement) < 1e-10

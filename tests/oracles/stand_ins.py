@@ -115,4 +115,4 @@ def assert_kept(path, table, found, changed=dict):
 def differing(found, before):
     """Return the numbers that are not what they were; NaN where one has come or gone."""
     both = {key: (found.get(key, math.nan), before.get(key, math.nan)) for key in found.keys() | before.keys()}
-    return {key: now for key, (now, then) in both.items() if then != "~" and not abs(now - then) <= 2e-4}
+    return {key: now for key, (now, then) in both.items() if then != "~" and not abs(now - then) <= 1e-4}

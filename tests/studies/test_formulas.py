@@ -110,7 +110,7 @@ def test_a_gate_is_as_wide_as_the_noise_of_a_history(discount, ratio, error, fre
 
 def test_the_worst_of_some_values_is_one_that_is_none():
     assert damping._worst({"a": 2.0, "b": 3.5, "c": 1.0}) == 3.5
-    assert damping._worst({"a": 2.0, "b": "not reported"}) == "not reported"
+    assert damping._worst({"a": 2.0, "b": "not reported", "c": "undefined"}) == "not reported"
 
 
 def test_dominance_is_lost_by_the_length_that_goes_with_a_strain():

@@ -1,23 +1,19 @@
 """The verification matrix: every gate can be looked up, a phenomenon is found by its name and judges any solver."""
 
 import json
-import tomllib
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 from conftest import typed
 
 import validation.studies
 from validation.errors import InputError
-from validation.gates.gate import Gate
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.suite import matrix
 from validation.suite.folders import study_folders
 from validation.suite.matrix import phenomena, phenomenon, unstated, verify
 
-MARGINS = tomllib.loads(Path(__file__).with_name("margins.toml").read_text(encoding="utf-8"))["margin"]
 STUDY = """
 [study]
 name = "added"
@@ -90,19 +86,6 @@ def test_a_name_of_none_or_several_is_refused(text, advice, few):
     assert typed("verify", text).returncode == 2
 
 
-@pytest.mark.parametrize("row", MARGINS, ids=str)
-def test_the_margin_is_what_is_left_of_the_way_from_target_to_edge(row):
-    gate = Gate("s", ("dda",), "m", *row["band"], "r")
-    assert gate.target == pytest.approx(row["target"], abs=1e-11)
-    margin = gate.margin(row["value"])
-    assert ("none" if margin is None else pytest.approx(margin)) == row["margin"]
-
-
-def test_the_kind_of_a_reference_is_one_of_four():
-    with pytest.raises(ValueError, match="reference_kind"):
-        Gate("s", ("dda",), "m", 0, 1, "r", "guess")
-
-
 @pytest.mark.long
 @pytest.mark.parametrize(("factor", "status"), [(1.0, 0), (1.1, 1)])
 def test_a_phenomenon_judges_another_solver_behind_derived_rows(factor, status, few, tmp_path, monkeypatch):
@@ -123,5 +106,5 @@ def test_a_phenomenon_is_run_and_judged_and_who_cannot_answer_is_told(few, finis
     verdicts, (remark,) = verify(dominoes, Results(tmp_path), "dda-textbook")
     assert [str(verdict.status) for verdict in verdicts] == ["NOT RUN"] * 4
     assert remark.split(": ")[:3] == ["4 of 4 runs", "dda-textbook", str(Outcome.NOT_APPLICABLE)]
-    bouncing = replace(phenomena(["impacts"])[0], scenes=("bouncing-mass",))  # of whose four gates one is on `dda`
+    bouncing = replace(phenomenon("impacts"), scenes=("bouncing-mass",))  # of whose four gates one is on `dda`
     assert len(bouncing.gates) == 4 and len(verify(bouncing, Results(tmp_path), "dda-textbook")[0]) == 1

@@ -138,7 +138,7 @@ def answers_of(name: str, problems: Sequence[Problem], progress: Progress) -> An
 def _answer(solver: Solver, problem: Problem) -> Answer:
     run = completed(solver, problem.scene)
     seconds = sum(run.seconds.values()) if run.seconds else None
-    if run.outcome is not Outcome.COMPLETED or run.history is None:
+    if run.outcome is not Outcome.COMPLETED:
         return Answer(problem.name, problem, None, *_ending(run), seconds=seconds)
     same = [note for note in run.notes if note.startswith(SAME_AS)]
     warnings = tuple(f"It is {note}: the suite's own solver was judged." for note in same)

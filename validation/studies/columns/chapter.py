@@ -35,9 +35,8 @@ def over_time(table: StudyTable, directory: Path, name: str) -> Blocks:
     drawn = []
     for query in described["drawn"]:
         for line in table.lines(query)[:1]:
-            history = None if line.case is None else line.case.histories.get(query["solver"])
-            if line.case is not None and history is not None:
-                drawn.append(space_time(line.case.scene, history, query["title"]))
+            if line.case is not None and query["solver"] in line.case.histories:
+                drawn.append(space_time(line.case.scene, line.case.histories[query["solver"]], query["title"]))
     if not drawn:
         return []
     return [saved(space_time_figure(drawn, described["height"]), directory, described["file"], described["caption"])]

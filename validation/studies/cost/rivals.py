@@ -16,7 +16,7 @@ from validation.runs.history import Array, History
 from validation.runs.run import Outcome, Run
 from validation.scenes import features
 from validation.scenes.scene import Scene
-from validation.solvers.contract import LineStyle, Solver
+from validation.solvers.contract import Solver
 
 MOST_SOLVES = 6  # of a step: the contact is closed or open
 
@@ -50,7 +50,6 @@ class PlainLoop(ColumnSolver):
 
     name = "validation.studies.cost.rivals:PlainLoop"
     handles = frozenset({features.UNILATERAL, features.WEIGHT})
-    line = LineStyle("#8c6d1f", (), 0.9, 4)
 
     def solve(self, scene: Scene, full: bool = False, fields: object = None) -> Run:
         """Run the scene."""
@@ -109,7 +108,6 @@ class ModalFilter(ColumnSolver):
 
     name = "validation.studies.cost.rivals:ModalFilter"
     handles = frozenset({features.WEIGHT})
-    line = LineStyle("#56b4e9", (), 0.9, 4)
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why the modes are not those of the scene."""

@@ -30,7 +30,7 @@ class Pushing:
     friction: tuple[float, float]  # tan(phi) on the slope
     slope: float  # b [rad]
     stiffness: float  # of the spring between them [N/m]
-    gap: float = 0.0  # m, at t = 0
+    gap: float  # m, at t = 0
     speeds: tuple[float, float] = (0.0, 0.0)  # at t = 0, down the slope [m/s]
     gravity: float = 9.81
 

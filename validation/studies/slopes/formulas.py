@@ -196,7 +196,7 @@ def closed(case: Scene) -> Metrics:
     """Return the drag [1/s], the acceleration [m/s2] and the displacement at the end [m] in closed form."""
     acceleration = friction.sliding_acceleration(case)
     displacement, _ = friction.free_motion(case, acceleration)
-    return {"drag": friction.drag_rate(case) + 0.0, "acceleration": acceleration, "free": displacement[-1]}
+    return {"drag": abs(friction.drag_rate(case)), "acceleration": acceleration, "free": displacement[-1]}
 
 
 def beside_closed(case: Scene, dda: Row) -> Metrics:
@@ -223,7 +223,8 @@ def beside_rigid(case: Scene) -> Metrics:
 def data() -> Mapping[str, Any]:
     """Return the closed forms that are drawn: displacements over time, and what a drag leaves after a second."""
     free = []
-    for case in (*tuple(cases(SLIDING))[-1:], *cases(DRAG)):
+    *_, without_drag = cases(SLIDING)
+    for case in (without_drag, *cases(DRAG)):
         displacement, _ = friction.free_motion(case, friction.sliding_acceleration(case))
         instants = np.unique(np.linspace(0, case.time.steps - 1, 200).round().astype(int))
         free.append({"time": short((instants + 1) * case.time.step), "distance": short(displacement[instants])})

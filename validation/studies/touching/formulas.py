@@ -76,13 +76,11 @@ def motion(scene: Scene, history: History) -> Metrics:
     return {"missed": 0.0, "steps": steps, "beside": max(0.0, beside), "pair": words, "foot": touch.foot, **gain}
 
 
-def turned_in_a_step(case: Scene) -> Band | None:
+def turned_in_a_step(case: Scene) -> Band:
     """Return how far the first force may lie beside the normals [rad]: what both blocks turn in two steps.
 
     A block that does not spin begins to by the force of the step itself, at W^2 v per metre, W = 2 dt sqrt(p/m).
     """
-    if touch_of(case) is None:
-        return None
     step = case.time.step
     bodies = polygons(case)
     speed = sum(math.hypot(*body.velocity) for body in bodies)

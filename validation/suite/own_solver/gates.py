@@ -110,12 +110,6 @@ def study_of(name: str) -> Study:
 
 
 @functools.cache
-def gates() -> Mapping[str, tuple[str, Gate]]:
-    """Return every gate of the suite that the tests judge: id to study and gate."""
-    return {gate.id: (study, gate) for study in judged_studies() for gate in get_study(study).gates()}
-
-
-@functools.cache
 def applying() -> Mapping[str, tuple[str, Gate]]:
     """Return the gates on the two-block model of `dda`, and those on the start, which are for users' solvers alone.
 

@@ -22,7 +22,6 @@ from validation.solvers.files import Outside
 from validation.solvers.foreign import SAME_AS
 from validation.solvers.registry import get_solver
 from validation.solvers.user import PARTS, UserSolver
-from validation.suite.folders import judged_studies
 from validation.suite.matrix import JUDGED, CaseInPlace
 from validation.suite.own_solver import gates, history
 
@@ -65,7 +64,7 @@ class GateRuns:
     def __init__(self, results: Results, solver: str = JUDGED, studies: Iterable[str] = ()) -> None:
         self.results = results
         self.solver = solver  # which answers in the place of `JUDGED`
-        self.studies = tuple(studies or judged_studies())
+        self.studies = tuple(studies)
         self.rows: dict[tuple[str, str], Row] = {}
         self._finished: dict[str, Finished] = {}  # by study: what is derived is computed once for all gates
 
