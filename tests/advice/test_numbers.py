@@ -1,6 +1,7 @@
 """What advice is known without a run, as numbers kept in `numbers.toml` beside this file; `KEEP_PAGES=1` renews it."""
 
 import itertools
+import re
 import tomllib
 from collections.abc import Iterator
 from itertools import cycle
@@ -38,14 +39,15 @@ COLUMNS = {
     "shaken": ("columns-shaken", {}),
     "stack": ("field-stack", {"column.gravity": 9.81, "time.gg": 0.99}),
     "slips": ("columns-slips", {"time.alpha": 0.25, "time.delta": 0.5}),
-    "cradle": ("field-cradle", {"time.alpha": 0.25, "time.delta": 0.5}),
+    "cradle": ("field-cradle", {"time.alpha": 0.25, "time.delta": 0.5, "column.gravity": 9.81}),
 }
 STEPPINGS = (
     *(Stepping(0.002, 0.25, 0.5), Stepping(0.003, 0.3, 0.6, 0.95), Stepping(0.01, 0.25, 0.5, 0.8)),
     *(Stepping(0.002, 0.5, 1.0), Stepping.named("chung-hulbert", 0.02, rho_inf=0.3)),
 )
 TARGETS = ((0.02, "dt"), (0.3, "gg"), (0.1, "scheme"), (1.9, "dt"))
-SLOPES = ("slope-drag", "creep-steps", "slope-sliding")
+SYMBOLS = re.compile(r"\b(?:dt|gg|delta|alpha)\b")
+SLOPES = {"slope-drag": {}, "creep-steps": {}, "slope-sliding": {}, "slope-threshold": {"time.gg": 0.0}}
 PAGES = (  # scene, values, penetration
     ("unlocked-constant", {"time.step": 1e-3, "contact.stiffness": 1e11, "time.gg": 0.97, "contact.gap": 0.3}),
     ("unlocked-average", {"time.step": 1e-3, "block.velocity": -2.0, "contact.band": [0.0, 1e-4]}, 3e-4),
@@ -99,7 +101,8 @@ def of_block(scene):
     if scene.contact.law == "locked":
         yield damping(scene).as_dict()
         for target, solve_for in TARGETS if scene.time.scheme == "newmark" else ():
-            yield advise(scene, damping=target, solve_for=solve_for).as_dict()
+            advice = advise(scene, damping=target, solve_for=solve_for)
+            yield advice.as_dict(), SYMBOLS.findall(advice.sentence)
     if scene.time.scheme == "newmark":
         landing = contact.restitution(scene)
         yield contact.omega(scene), landing and [landing.low, landing.mean, landing.high, landing.own]
@@ -116,6 +119,7 @@ def of_column(scene):
         yield vars(known)
         for resting in (None, columns.Rest(0.3, 0.9, 2e-3), columns.Rest(None, 0.9, 2e-3)):
             yield [*columns.advised(scene, known, resting)]
+        yield columns._at_rest(scene.column)
 
 
 def of_runs(scene):
@@ -147,8 +151,9 @@ def of_schemes(scene):
             offer = across._offer(scene, 100.0, modes, 5 * modes[0].frequency, 3e3, stepping)
             yield vars(offer)
         late = FALLS | {"time.start": "consistent"}
-        for values, no_gain in (({"time.gg": 0.98}, None), (late, None), (FALLS, False)):
-            yield advise_across(scene.with_values(values), 0.07, no_gain=no_gain).as_dict()
+        cases = (({"time.gg": 0.98}, None, 0.07), (late, None, 0.07), (FALLS, False, 0.07), ({}, None, 0.6))
+        for values, no_gain, target in cases:
+            yield advise_across(scene.with_values(values), target, no_gain=no_gain).as_dict()
 
 
 def of_coarse(granite):
@@ -205,8 +210,8 @@ def numbers_of_advice(step=0.002):
     found = {f"block {name}": of_block(block.with_values(values)) for name, values in BLOCKS.items()}
     for name, (scene, values) in COLUMNS.items():
         found[f"column {name}"] = of_column(first_of(scene).with_values(values))
-    for name in SLOPES:
-        scene = first_of(name)
+    for name, values in SLOPES.items():
+        scene = first_of(name).with_values(values)
         found[f"slope {name}"] = (friction.sliding(scene).as_dict(), [*alarms_of(scene)])
     for kind, rock in zip(KINDS, cycle(ROCKS), strict=False):
         found[f"new {kind}"] = typed(kind, rock, 1.1)

@@ -140,6 +140,7 @@ def test_columns_and_blocks_of_which_no_landing_is_known_are_refused():
         (lambda: contact_page.scenes(column), None),
         (lambda: contact_page.scenes(PAPER), "contact.law"),
         (lambda: overview.overview(column, Question()), None),
+        (lambda: advise_across(column, 0.1), None),
         (lambda: advise_across(opens.with_values(rigid), 0.1), None),
         (lambda: advise_across(opens.with_values(tapered), 0.1), None),
     ):
@@ -179,5 +180,12 @@ def test_the_present_run_is_measured_against_what_is_exact(values, reference, fi
     assert (name == reference or reference == "bar") and asked[name].steps == finer * steps
     assert asked[name].step == pytest.approx(0.002 / finer)
     assert asked[name].discount == 1.0  # which has no kinetic damping
-    monkeypatch.setattr(overview, "solve", lambda case, name: SimpleNamespace(history=None))
-    assert overview._present_error(scene) is None
+    for last in (None, finer * steps - 1):  # of a run that ends before its time, or has no history
+
+        def ended(case, name, last=last):
+            history = made(case, name).history
+            short = History(history.time[:last], history.columns)
+            return SimpleNamespace(history=history if name == "dda" else last and short)
+
+        monkeypatch.setattr(overview, "solve", ended)
+        assert overview._present_error(scene) is None

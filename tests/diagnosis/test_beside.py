@@ -95,6 +95,8 @@ def test_the_number_of_the_candidate_that_gives_a_history_is_found_to_its_digits
     assert verdict.words == {"density-factor": "density-factor 1.17"}
     assert verdict.best == pytest.approx({"m": 1.3 * 1.17}, rel=1e-9)
     assert verdict.left == pytest.approx(0, abs=1e-10)
+    search.patience = 99
+    assert len(search.explanations()) == len(changes)  # of none is too little left
     slow = Swing(columns_of({"m": 1.3 * 1.17}), changes)
     slow.is_slow = True
     assert named(slow) == [("density-factor", 1.17)]

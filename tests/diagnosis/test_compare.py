@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from matplotlib.image import imread
 from oracles.sliding_block import Plain, history, write_measured_point
 
 from validation import load_scene, solve
+from validation.diagnosis.causes import intervals_of
 from validation.diagnosis.fits.fit import fit, intervals, untold
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.judgement import compare
@@ -42,12 +44,18 @@ def test_a_fit_finds_the_scheme_and_its_interval_holds_it():
     noise = 1e-5 * np.random.default_rng(3).standard_normal(80)
     noisy = histories(column, [true], steps).displacement[:, 0] + noise
     free = ("alpha", "delta", "gg", "softness")
-    (found,) = fit(Target(column, steps, np.arange(80), noisy[None]), [(Variant(0.25, 0.5, 1.0), free)], rounds=20)
+    target = Target(column, steps, np.arange(80), noisy[None])
+    (found,) = fit(target, [(Variant(0.25, 0.5, 1.0), free)], rounds=20)
     for name, interval in intervals(found).items():
         # the interval is a 95 % one; twice it fails once in ten thousand
         assert abs(interval.value - getattr(true, name)) < 2 * interval.half_width, name
         assert interval.half_width < 0.1, name
     assert untold(found) == []
+    ends = intervals_of(target, found, ["gg", "springs-factor"])
+    for cause, name, number in (("gg", "gg", float), ("springs-factor", "softness", lambda x: math.exp(-x))):
+        one = intervals(found)[name]
+        expected = sorted(number(one.value + by * one.half_width) for by in (-1, 1))
+        assert ends[cause] == pytest.approx(expected, rel=1e-6), cause
 
 
 def test_what_one_settled_row_cannot_tell_is_said():

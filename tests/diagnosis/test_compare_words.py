@@ -106,6 +106,10 @@ def test_sentences_are_as_before():
     ]
     fields += [{"family": "hht", "alpha": 1.0, "delta": 0.5}, {"family": "composite", "split": 0.5}]
     fields += [{"family": "composite", "split": 0.4}, {"family": "chung-hulbert", "spectral": 0.5}]
+    fields += [{"alpha": 0.25, "delta": 0.5, "start": "consistent", "gg": gg} for gg in (0.9, 1.0)]
+    fields += [{"alpha": 1.0, "delta": 1.5, "gg": gg} for gg in (0.9, 1.0)] + [{"family": "leapfrog", "gg": 0.9}]
+    fields += [{"family": "chung-hulbert", "spectral": 0.0}, {"family": "composite", "split": 2 - 2**0.5}]
+    fields += [{"family": "theta", "spectral": 1.0}, {"family": "theta", "spectral": 1.0, "contact": "impact"}]
     variants = [replace(OWN, **changes) for changes in fields]
     numbers = (-1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 3.0, 12.0)
     scene = replace(OWN, alpha=0.5, delta=1.0, gg=0.99, start="consistent")
@@ -122,7 +126,8 @@ def test_sentences_are_as_before():
         of_causes += [NUMBER.findall(text) for text in texts]
         assert not any("{" in text for text in texts), name
     found = {
-        "of schemes": [wording.scheme_of(v) + other_names(v) for v in (*variants, replace(OWN, exact=True))],
+        "of schemes": [wording.scheme_of(v) for v in (*variants, replace(OWN, exact=True))],
+        "others of schemes": [other_names(v) for v in variants],
         "of several": [
             *(wording.sentence(replace(one, alike=same)) for one in (about, about_output) for same in ((), alike)),
             *(wording.not_explained(about, near, left, STAGES) for left in (0.034, 0.49, 0.51)),
@@ -135,6 +140,7 @@ def test_sentences_are_as_before():
             wording.diverged(Departure(7, "phase"), 1.23456),
         ],
     }
+    assert "period" in found["of several"][4].partition("at rest")[2]  # what is right comes before what is not
     for name, texts in found.items():
         found[name] = summed(numbers_in([[texts.index(text), NUMBER.findall(text)] for text in texts]))
     assert_kept(KEPT, "sentences", found | {"of causes": summed(numbers_in(of_causes))})

@@ -190,6 +190,9 @@ def test_a_block_that_is_no_rectangle_is_judged_by_linear_models():
     assert len(answer.notes) == 2
     with pytest.raises(InputError):
         judged_without_rectangle(polygon, Foreign(TIME**1.01, displacement, pressure))
+    with pytest.raises(InputError) as refusal:
+        compare(polygon.with_values({"load.pressure": 0.0, "load.gravity": 9.81}), Foreign(TIME, 0 * TIME))
+    assert refusal.value.field == "displacement"
 
 
 def test_a_rival_that_explains_a_history_is_told_with_how_far_dda_is(monkeypatch):

@@ -59,6 +59,9 @@ def departures():
         for change in (0.04 * t**0, 0.1 * swing, -0.3 * t * swing, late - swing, 0 * t, 9e-4 * t, 2.2e-3 * t):
             for noise in (0.0, 4e-4):
                 yield asdict(evidence.measured(expected, expected + change, 3 * np.arange(rows) + 2, noise))
+        manners = (0.04 * t**0, 0.1 * swing, -0.3 * t * swing, late - swing, 0.01 * np.gradient(swing, t))
+        for first, second, part in itertools.product(manners, manners, (0.2, 0.4, 0.6)):
+            yield evidence.measured(expected, expected + part * first - (1 - part) * second, np.arange(rows), 0.0).kind
         for factor in (1.0, 1.3, 2.5):
             grows = factor ** np.arange(float(rows))
             yield evidence.growth(grows, 0 * t + 1), evidence.growth(grows, 50 * t), evidence.growth(0 * t, 0 * t)
@@ -132,6 +135,23 @@ def decisions():
         alone = [Explanation((by_id["density-factor"],), SimpleNamespace(variant=replace(OWN, density=1.7)))]
         for move in search._few(target, scene, alone):
             yield move.id, dict(move.changes), move.free, [*move.starts]
+
+
+def aliases():
+    """Yield by which name a scheme of several names is called, and which these are."""
+    ids = ("theta", "start", "hht gg", "wbz gg", "wbz", "gg", "hht density-factor", "symplectic-euler", "")
+    target = Target(BLOCK, np.full(30, 2e-3), np.arange(30), np.ones((1, 30)))
+    for free in ((), ("gg",), ("gg", "spectral")):
+        several = []
+        for number, names in enumerate(ids):
+            fit = SimpleNamespace(free=free, variant=replace(OWN, gg=0.9 + number / 100))
+            several.append(Explanation(tuple(map(Move, names.split())), fit))
+        for alike in (True, False):
+            with pytest.MonkeyPatch.context() as patch:
+                patch.setattr(search, "same_program", lambda target, *both, alike=alike: alike and both[0] == both[1])
+                for best in several:
+                    one, names = search._canonical(target, best, several)
+                    yield one.ids, [*names], str(search._scheme_alone(best))
 
 
 class World:
@@ -222,7 +242,8 @@ def acceptance():
             pairs = [
                 search.Explanation(pair, world.fit(OWN, ("gg", "band"))) for pair in itertools.combinations(LIMITS, 2)
             ]
-            yield [(one.ids, one.fit.misfit) for one in search._fewer(target, OWN, pairs)]
+            for one in search._fewer(target, OWN, pairs):
+                yield one.ids, one.fit.misfit, [dict(move.changes) for move in one.moves]
             yield world.fits
 
 
@@ -356,5 +377,5 @@ def same_rows():
 
 def test_rules_decide_as_before():
     tables = (departures, digits, decisions, names, fits, parts, readings_of_rows, same_rows, scenes, searches)
-    tables += (acceptance, motions)
+    tables += (acceptance, motions, aliases)
     assert_kept(KEPT, "rules", {table.__name__: summed(said([*table()], 0.0)) for table in tables})

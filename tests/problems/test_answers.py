@@ -104,6 +104,11 @@ MISTAKES = {
         lambda text: text.replace("0.002", '{"spall": 0.002}'),
         (f"{FILE}:9:13", "step_s", "no such file"),
     ),
+    "a problem that nobody asks": (
+        FILE,
+        lambda text: text.replace("0.002", '{"spal": 0.002}'),
+        (f"{FILE}:9:13", "step_s", None),
+    ),
 }
 
 
@@ -327,11 +332,11 @@ def test_tables_alone_answer_problems_and_scenes_of_ones_own(tmp_path):
 POSE = ("x", "y", "angle")
 
 
-def boxes_answered(place, name):
+def boxes_answered(place, name, unit=1.0):
     """Answer a problem of boxes with boxes that stay where they are."""
     asked = problem(name)
     poses = {f"{box.name}.{part}": getattr(box, part) for box in boxes_of(asked.scene).boxes for part in POSE}
-    columns = {c: np.full(len(asked.instants), poses[c]) for c in asked.columns}
+    columns = {c: np.full(len(asked.instants), unit * poses[c]) for c in asked.columns}
     (place / f"{name}.csv").write_text(table_of(asked, History(asked.instants, columns)))
 
 
@@ -347,3 +352,5 @@ def test_positions_of_boxes_are_measured(tmp_path):
     # Forces are not asked: what is measured on them alone is not among the numbers.
     assert len(judged.judged["pile"].judgement.criteria) == 2
     assert "slid" in judged.judged["standing-friction-19-deg"].judgement.deciding.name
+    boxes_answered(place, "standing", 1e3)
+    assert [field for _, field, _ in defects_of(place)] == ["box.y_m"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import re
 from dataclasses import replace
@@ -200,6 +201,10 @@ def test_what_is_tried_is_as_before():
         for base in Runs(scene, STANDARD).schemes():
             found.append([base.values, base.every, base.usual, base.alpha(scene.time), base.delta(scene.time)])
             found.append([models.INTERCHANGED in base.words, base.exact])
+    exact = (None, runs.exact(), Base("", {}), Base("", {}, 2, solver="bars-events"))
+    for scene, one, cheap in itertools.product((SCENE, load_scene("field-rocking")), exact, (True, False)):
+        bases = module.Search(Runs(scene, STANDARD), {})._bases(one, cheap)
+        found.append([[base.values, base.every, base.solver] for base in bases])
     named = [Cause(f"C{i}", ids, dict.fromkeys(ids, 0.9), (), 1e-3 * i) for i, ids in enumerate((("gg",), ("x", "gg")))]
     found += [[module._rank(one), module._short(one)] for one in named]
     weighty = {"load.gravity": 9.81}, {"block.velocity": -1.0, "contact.law": "unilateral"}, {"time.gg": 0.9}

@@ -32,7 +32,9 @@ def written(tmp_path_factory):
     directory = tmp_path_factory.mktemp("pack")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(pack, "names", lambda: (*QUICK, *BOXES))
-        assert pack.write_pack(directory) == len(QUICK) + len(BOXES)
+        told = []
+        assert pack.write_pack(directory, lambda *given: told.append(given)) == 6
+        assert told == [(number, 6, name) for number, name in enumerate((*QUICK, *BOXES))]
     return directory
 
 
