@@ -37,7 +37,9 @@ def test_hidden_tension_is_in_megapascals_with_its_time_and_its_duration():
         "fem:full": pulling(-0.5e6, 0.1, 0.2),
         "bar": pulling(-1.25e6, 0.015, 0.003),
         "continuum": pulling(-4.0, 0.1, 0.2),  # below a millionth of the load: rounding
-        "fem": {"pressure.minimum": 0.0, "pressure.minimum_time": "undefined", "pressure.tension_time": "undefined"},
+        "fem": pulling(-0.5e6, 0.1, "undefined"),
+        "layers": pulling(-0.5e6, "undefined", 0.2),
+        "bars-events": pulling("undefined", 0.1, 0.2),
     }
     alarm = raised(SCENE, rows)[TENSION]
     assert re.findall(r"[\d.]+", alarm.sentence) == ["0.432", "0.0025", "0.0375", "1.25", "0.015", "0.003"]

@@ -67,13 +67,18 @@ def test_a_column_that_is_not_reported_is_named_by_problem(tmp_path):
 
 def test_an_answer_to_a_problem_that_changed_is_stale_and_the_others_stand(tmp_path, monkeypatch):
     now = packs.packs()[PACK]
-    monkeypatch.setattr(packs, "packs", lambda: {"1.9": now | {"locked": "0" * 16}, PACK: now})
+    without = {name: digest for name, digest in now.items() if name != "column"}
+    monkeypatch.setattr(packs, "packs", lambda: {"1.8": without, "1.9": now | {"locked": "0" * 16}, PACK: now})
     monkeypatch.setattr("validation.problems.answers.packs", packs.packs)
     answered(tmp_path, pack="1.9")
     (tmp_path / "locked.csv").write_text("what it asked then is not known")
     ((stale, *others),) = [one.answers for one in read_sets(tmp_path)]
     assert stale.name == "locked" and stale.history is None and "1.9" in stale.reason
     assert [answer.status for answer in others] == [None, None]
+    early = answered(tmp_path / "early", pack="1.8")
+    assert [(field, value) for _, field, value in defects_of(early)] == [("pack", "'1.8'")]  # without a column yet
+    (early / "column.csv").write_text(blank_table(problem("column")))
+    assert names_of(read_sets(early)) == [("default", ("locked", "rocking"))]
 
 
 # ---- what is refused ------------------------------------------------------------------------------------------------
