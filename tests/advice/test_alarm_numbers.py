@@ -23,9 +23,6 @@ def raised(scene, rows, histories=None):
     return {alarm.kind: alarm for alarm in alarms([scene], finished)}
 
 
-# ---- tension and ringing ------------------------------------------------------------------------------------------
-
-
 def pulling(least, when, duration):
     return {"pressure.minimum": least, "pressure.minimum_time": when, "pressure.tension_time": duration}
 
@@ -74,6 +71,3 @@ def test_what_has_no_damping_ratio_of_its_own_is_not_split():
         assert ("kinetic" in text) is (kinetic != 0)
     for ratio in (0.999, 1.0):
         assert ("overdamped" in runs(replace(mode, damping=ratio))) is (ratio == 1.0)
-
-
-# ---- the damping budget -------------------------------------------------------------------------------------------

@@ -148,9 +148,6 @@ def test_a_long_run_is_timed_by_two_short_ones(monkeypatch):
     assert goals.estimated_seconds(PAPER, "layers", 5) is None
 
 
-# ---- columns and beams ----------------------------------------------------------------------------------------------
-
-
 def test_a_column_is_cut_for_its_wave_and_judged_by_its_exact_motion():
     scene = load_scene("waves-base").expand()[0]
     _, offer = cut_column(scene, 0.2)

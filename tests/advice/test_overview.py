@@ -1,7 +1,5 @@
 """The page of `advise`: its table, its lines and what it asks to be typed, of an answer that is made."""
 
-from __future__ import annotations
-
 import math
 import re
 from types import SimpleNamespace

@@ -1,7 +1,5 @@
 """Peaks of a frequency response, of amplitudes that are known in closed form."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

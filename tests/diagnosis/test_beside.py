@@ -1,7 +1,5 @@
 """The search beside runs of a scene, with a formula in the place of the runs: a swing whose numbers are candidates."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -240,8 +238,6 @@ def test_two_explanations_of_one_number_are_one():
     assert listed(fitted, fixed("gg", "", {})) == listed(fitted, fitted) == [0.0, 1e-3]
     assert listed(fixed("sign", "", {}, 1.0), plain) == [0.0, 1e-3]
 
-
-# ---- the answer ------------------------------------------------------------------------------------------------------
 
 FOREIGN = Foreign(np.ones(1), np.ones(1), notes=("note of the file",))
 STAGES = {"reading": True, "displacement": False, "contact_pressure": False}

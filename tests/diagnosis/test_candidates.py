@@ -1,7 +1,5 @@
 """What is tried on a history, as numbers kept in `numbers.toml` beside this file; `KEEP_PAGES=1` writes it anew."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

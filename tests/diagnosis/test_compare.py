@@ -1,7 +1,5 @@
 """`compare`: the model that fits, against the suite's own DDA and against a DDA program of another make."""
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import replace
@@ -29,12 +27,6 @@ YIELDS = {"opens": True, "updated": True, "base": (5.0, 2e12)}  # as a block of 
 def scene(**changes):
     base = {"time.step": 0.002, "time.steps": 60}
     return load_scene("figures-3-4").with_values(base | {k.replace("__", "."): v for k, v in changes.items()})
-
-
-# ---- the stepping of many variants ----------------------------------------------------------------------------------
-
-
-# ---- fits ---------------------------------------------------------------------------------------------------------
 
 
 def test_a_fit_finds_the_scheme_and_its_interval_holds_it():
@@ -66,9 +58,6 @@ def test_what_one_settled_row_cannot_tell_is_said():
     target = Target(column, steps, np.arange(100, 140), late[None])
     (found,) = fit(target, [(v, ("alpha", "delta", "gg", "softness"))])
     assert {name for direction in untold(found) for name in direction} >= {"alpha", "delta", "gg"}
-
-
-# ---- answers --------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.long
@@ -120,9 +109,6 @@ def test_a_program_of_another_make(program, opened, tmp_path):
     expected = {"contact-opened"} if opened else set()
     assert {*answer.causes} - {"own-weight"} == {"base-compliance", "geometry-updated"} | expected
     assert (answer.departure and answer.departure.step) == (opened and opened[0])
-
-
-# ---- the command line -----------------------------------------------------------------------------------------------
 
 
 @pytest.mark.long

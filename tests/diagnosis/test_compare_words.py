@@ -1,7 +1,5 @@
 """What `compare` says: soft springs are never called benign, and every number in its words has its sign and unit."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 
@@ -52,9 +50,6 @@ def softened(solver, times, **changes):
     return compare(scene, Foreign(theirs.time, theirs.displacement, theirs.contact_pressure))
 
 
-# ---- soft springs -------------------------------------------------------------------------------------------------
-
-
 @pytest.mark.long
 def test_a_base_that_adds_two_per_cent_is_benign():
     answer = softened("dda", 1 / 1.04)
@@ -65,9 +60,6 @@ def test_a_base_that_adds_two_per_cent_is_benign():
     assert found == pytest.approx({"springs-factor": 1 / 1.04, "width-factor": 1.04}, rel=1e-5)
     # what is no fault is taken over into what is expected
     assert np.allclose(answer.curves["dda"][1], answer.curves["the file"][1], rtol=1e-6)
-
-
-# ---- other faults -------------------------------------------------------------------------------------------------
 
 
 def judged(change, **values):
@@ -86,9 +78,6 @@ def test_rows_that_are_shifted_by_a_step_are_said_so(late, monkeypatch):
 
     answer = judged(lambda v, p: (shifted(v), shifted(p)))
     assert (answer.causes, answer.values) == (["time-shift"], {"time-shift": late})
-
-
-# ---- words --------------------------------------------------------------------------------------------------------
 
 
 def test_sentences_are_as_before():
@@ -144,9 +133,6 @@ def test_sentences_are_as_before():
     for name, texts in found.items():
         found[name] = summed(numbers_in([[texts.index(text), NUMBER.findall(text)] for text in texts]))
     assert_kept(KEPT, "sentences", found | {"of causes": summed(numbers_in(of_causes))})
-
-
-# ---- what is printed ----------------------------------------------------------------------------------------------
 
 
 SCALES = {"the file": 4.0, "dda": 5.0, "best": 6.0}

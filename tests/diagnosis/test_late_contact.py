@@ -1,7 +1,5 @@
 """Contact that switches late, or bears a tension, in a program of someone else's: named by what has an effect."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

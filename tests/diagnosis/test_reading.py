@@ -1,7 +1,5 @@
 """Histories of other programs: what is read, and what is refused in one line."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np
@@ -55,6 +53,9 @@ def test_a_table_with_other_names_units_and_sign(tmp_path, separator):
     assert len(found.notes) == 1  # the row at t = 0 is ignored
     header = text.replace("t" + separator + "uy", separator.join(["time_ms", "displacement_mm"]), 1)
     of_header = read(written(tmp_path, header), {"contact_pressure": "3"})
+    without = written(tmp_path, "\n".join(text.splitlines()[2:]))
+    by_number = read(without, {"time": "1", "displacement": "2", "contact_pressure": "3"}, scale)
+    assert by_number.displacement == pytest.approx(found.displacement)
     assert of_header.time == pytest.approx(found.time) and of_header.displacement == pytest.approx(-found.displacement)
 
 
@@ -94,8 +95,6 @@ def test_a_program_s_own_steps_may_begin_late():
     (rows,) = (one.rows for one in late)
     np.testing.assert_array_equal(rows, np.arange(4, 12))
 
-
-# ---- histories that would take hours to judge -----------------------------------------------------------------------
 
 STEP = 0.002  # s
 

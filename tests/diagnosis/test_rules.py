@@ -1,7 +1,5 @@
 """Rules of the diagnosis over tables of cases on both sides of their limits, as numbers kept in `numbers.toml`."""
 
-from __future__ import annotations
-
 import itertools
 from dataclasses import asdict, replace
 from pathlib import Path

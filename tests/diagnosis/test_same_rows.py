@@ -3,8 +3,6 @@
 Each is made by a program of someone else's, and held to what can be known of it.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

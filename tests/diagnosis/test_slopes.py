@@ -1,7 +1,5 @@
 """`compare` on slopes: the law that a history obeys, from programs that are not the suite's."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path

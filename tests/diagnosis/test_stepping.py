@@ -1,7 +1,5 @@
 """The linear stepping of candidate changes: the suite's solver, closed forms and loops written for one scheme each."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

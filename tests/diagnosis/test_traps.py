@@ -1,7 +1,5 @@
 """One slip at a time in a plain DDA code of someone else's: each is named, and what is no slip is not."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

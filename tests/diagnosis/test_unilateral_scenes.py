@@ -1,7 +1,5 @@
 """Histories beside scenes whose contact opens, which candidate changes step as the suite's own solver does."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from oracles.few_moves import only

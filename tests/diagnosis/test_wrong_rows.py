@@ -1,7 +1,5 @@
 """Rows that are wrong by themselves, and noise that is nothing but noise: neither makes an excuse for the other."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Folders of answers: read as a whole, every defect of all files listed at once, kept in their layout or refused."""
 
-from __future__ import annotations
-
 import csv
 import json
 

@@ -1,7 +1,5 @@
 """Problems of several blocks: their numbers are those of other programs, DDA passes them, and wrong answers fail."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

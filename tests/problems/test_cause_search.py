@@ -1,7 +1,5 @@
 """The search for the cause of a failure, with a formula in the place of the runs: a swing on two springs in series."""
 
-from __future__ import annotations
-
 import itertools
 import math
 import re
@@ -139,18 +137,18 @@ SCHEMES = [
 ]
 
 
-@pytest.mark.parametrize(("values", "numbers", "words"), SCHEMES)
-def test_a_scheme_is_named_with_the_step_at_which_it_passes(values, numbers, words, monkeypatch):
+def test_a_scheme_is_named_with_the_step_at_which_it_passes(monkeypatch):
     monkeypatch.setattr(Runs, "exact", None)  # of digits that agree nothing else is asked
-    one = found(motion(values))
-    assert (one.ids, one.values) == (("scheme",), numbers)
-    assert words in one.sentence
-    runs = Runs(SCENE, STANDARD)
-    shares = []
-    for step in (one.passing_step, 2 * one.passing_step):
-        every = round(SCENE.time.step / step)
-        shares.append(runs.apart(runs.sampled(Base("", values, every)), EXACT.columns))
-    assert shares[0] <= 1 < shares[1] and SCENE.time.step / one.passing_step >= 2
+    for values, numbers, words in SCHEMES:
+        one = found(motion(values))
+        assert (one.ids, one.values) == (("scheme",), numbers)
+        assert words in one.sentence
+        runs = Runs(SCENE, STANDARD)
+        shares = []
+        for step in (one.passing_step, 2 * one.passing_step):
+            every = round(SCENE.time.step / step)
+            shares.append(runs.apart(runs.sampled(Base("", values, every)), EXACT.columns))
+        assert shares[0] <= 1 < shares[1] and SCENE.time.step / one.passing_step >= 2
 
 
 def test_another_number_beside_the_usual_scheme_is_told_with_it():
@@ -249,9 +247,6 @@ def test_numbers_are_looked_for_where_runs_are_cheap(monkeypatch):
     assert asked == [cheap, *2 * [3 * [False]], cheap, *2 * [[False, False, True]]]
 
 
-# ---- runs ------------------------------------------------------------------------------------------------------------
-
-
 def test_a_run_stands_for_the_exact_motion_where_it_is_near_enough(monkeypatch):
     runs = Runs(SCENE, STANDARD)
     base = runs.exact()
@@ -293,9 +288,6 @@ def test_a_solver_that_does_not_run_to_its_end_has_no_history(monkeypatch):
     assert given(solve=fails) is None
     assert given(solve=lambda scene: SimpleNamespace(outcome=Outcome.OVERFLOW, history=EXACT)) is None
     assert models._run_by(SCENE, {"time.steps": -1}, "dda") is None
-
-
-# ---- words and `compare` ---------------------------------------------------------------------------------------------
 
 
 def test_compare_is_asked_where_it_can_look(monkeypatch):

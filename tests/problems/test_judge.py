@@ -49,12 +49,12 @@ WRONG = {
 
 
 @pytest.mark.parametrize("name", ALL)
-@pytest.mark.parametrize("wrong", WRONG)
-def test_a_wrong_history_fails(name, wrong):
+def test_a_wrong_history_fails(name):
     asked = short(name)
-    word = judge(asked, history(asked, WRONG[wrong])).status
-    within = (name, wrong) == ("rocking", "half a step late")  # it falls so slowly that 2.5 ms are less than 1 % of a
-    assert word is (Status.PASS if within else Status.FAIL)
+    for wrong, change in WRONG.items():
+        word = judge(asked, history(asked, change)).status
+        within = (name, wrong) == ("rocking", "half a step late")  # it falls so slowly that 2.5 ms are below 1 % of a
+        assert word is (Status.PASS if within else Status.FAIL), wrong
 
 
 @pytest.mark.parametrize("name", ["locked", "rocking"])
@@ -90,17 +90,15 @@ def test_the_exact_motion_passes_and_so_does_what_one_per_cent_of_a_datum_change
 
 
 @pytest.mark.parametrize("name", ALL)
-@pytest.mark.parametrize(("times", "word"), [(1 - 1e-6, Status.PASS), (1 + 1e-6, Status.FAIL)])
-def test_both_sides_of_the_band(name, times, word):
+def test_both_sides_of_the_band(name):
     asked = short(name)
     held = standard(asked)
     for column, edge in held.bands.items():
-        columns = dict(held.exact.columns)
-        columns[column] = columns[column] * (1 + times * edge.high)
-        found = judge(asked, History(held.exact.time, columns))
-        assert found.status is word
-        assert found.deciding.name == column
-        assert edge.datum in found.deciding.reason
+        for times, word in ((1 - 1e-6, Status.PASS), (1 + 1e-6, Status.FAIL)):
+            x = held.exact.columns[column] * (1 + times * edge.high)
+            found = judge(asked, History(held.exact.time, dict(held.exact.columns) | {column: x}))
+            assert (found.status, found.deciding.name) == (word, column)
+            assert edge.datum in found.deciding.reason
 
 
 def test_a_column_that_is_absent_is_told():
@@ -199,9 +197,6 @@ def test_one_per_cent_of_contacts_is_of_each_of_them(name, values, stiffness, st
 
 def test_the_modulus_of_rigid_blocks_is_no_datum():
     assert ["Young's modulus" in changes(problem(name).scene) for name in ("stack", "cradle")] == [False, True]
-
-
-# ---- boxes on a ground -----------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("name", boxes.box_problems())

@@ -1,7 +1,5 @@
 """The problem pack: complete, and all that a stranger needs to answer a problem with the exact motion."""
 
-from __future__ import annotations
-
 import json
 import shutil
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Versions of the pack: digests of problems, and which answers to an earlier pack are answers to this one."""
 
-from __future__ import annotations
-
 import itertools
 import json
 from dataclasses import replace

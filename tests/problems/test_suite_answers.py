@@ -1,7 +1,5 @@
 """What this suite's own solvers answer: at fine steps DDA passes, by its habit it damps; the page has the bands."""
 
-from __future__ import annotations
-
 import pytest
 
 from validation.diagnosis.hooks import DiagnosisHooks
