@@ -84,8 +84,9 @@ def test_what_to_type_next_is_the_settings_of_one_or_a_goal_of_several():
 def test_a_page_has_its_facts_its_error_and_where_there_is_more():
     subjects = {"first mode": "damping", "springs": "contact", "glue": "damping"}
     facts = tuple(Fact(subject, "TOLD", part) for subject, part in subjects.items())
-    made = answer(facts=facts, present=PresentError("REFERENCE", 0.25, 0.0123, 0.0456))
+    made = answer(facts=facts, refused={"static": "WHY"}, present=PresentError("REFERENCE", 0.25, 0.0123, 0.0456))
     page = "\n".join(lines(PAPER, Question("mine.toml"), made)).splitlines()
+    assert page[-1] == "static: WHY"
     assert [line.split("  ")[1] for line in page[3:6] if line.endswith("TOLD")] == [*subjects]
     assert re.findall(r"[\d.]+(?= [%s])", page[6]) == ["1.23", "4.56", "0.25"]
     first, second = (line.split("dda-validate ") for line in page[7:9])

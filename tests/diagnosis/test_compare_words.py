@@ -16,10 +16,7 @@ from validation.cli import compare as cli_compare
 from validation.diagnosis import evidence
 from validation.diagnosis import sentences as wording
 from validation.diagnosis.answer import Answer
-from validation.diagnosis.causes import (
-    CAUSES,
-    words_of,
-)
+from validation.diagnosis.causes import CAUSES, words_of
 from validation.diagnosis.evidence import Departure, Stage
 from validation.diagnosis.fits.fit import Interval
 from validation.diagnosis.judgement import compare

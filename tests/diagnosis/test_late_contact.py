@@ -17,11 +17,7 @@ OPENS = Plain(dt=0.001, p=3e9, alpha=0.25, delta=0.5, consistent=True, opens=Tru
 @pytest.mark.long
 @pytest.mark.parametrize(
     ("slip", "cause"),
-    [
-        ({"lags": "opening"}, "late-opening"),
-        ({"lags": "switching"}, "late-contact"),
-        ({"band": 1e-3}, "dead-band"),
-    ],
+    [({"lags": "opening"}, "late-opening"), ({"lags": "switching"}, "late-contact"), ({"band": 1e-3}, "dead-band")],
     ids=str,
 )
 def test_what_switches_a_contact_is_named(slip, cause):

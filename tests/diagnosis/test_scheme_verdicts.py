@@ -39,16 +39,8 @@ STEPPED = [
 OPENED = [
     *STEPPED,
     ("dashpot", {"c": 0.4, "clipped": False}, {**STEPPED[-1][2], "dashpot": 0.4, "clipped": False}),
-    (
-        "chung-hulbert",
-        {"r": 0.6, "form": "state"},
-        {"family": "chung-hulbert", "spectral": 0.6, "contact": "mean gap"},
-    ),
-    (
-        "moreau",
-        {"e": 0.4, "theta": 0.7},
-        {"family": "theta", "spectral": 0.7, "contact": "impact", "restitution": 0.4},
-    ),
+    ("chung-hulbert", {"r": 0.6, "form": "state"}, {"family": "chung-hulbert", "spectral": 0.6, "contact": "mean gap"}),
+    ("moreau", {"e": 0.4, "theta": 0.7}, {"family": "theta", "spectral": 0.7, "contact": "impact", "restitution": 0.4}),
     ("lagrange", {"alpha": 0.5, "delta": 1.0}, {"contact": "rigid"}),
 ]
 

@@ -26,10 +26,7 @@ def answer_of(base, columns):
 
 @pytest.mark.parametrize(
     ("slip", "causes"),
-    [
-        ({}, ["single-rows"]),
-        pytest.param({"rho": 2970.0}, ["single-rows", "density-factor"], marks=pytest.mark.long),
-    ],
+    [({}, ["single-rows"]), pytest.param({"rho": 2970.0}, ["single-rows", "density-factor"], marks=pytest.mark.long)],
 )
 def test_a_row_printed_twice_is_told_by_its_step(slip, causes, monkeypatch):
     among(monkeypatch, FEW)
@@ -47,11 +44,7 @@ def test_a_row_printed_twice_is_told_by_its_step(slip, causes, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("base", "size", "seed"),
-    [
-        (Plain(steps=60, alpha=0.25, delta=0.5, gg=0.95), 1e-5, 0),
-        (Plain(steps=60), 1e-3, 1),
-    ],
+    ("base", "size", "seed"), [(Plain(steps=60, alpha=0.25, delta=0.5, gg=0.95), 1e-5, 0), (Plain(steps=60), 1e-3, 1)]
 )
 def test_white_noise_on_a_right_history_is_noise(base, size, seed):
     noise = np.random.default_rng(seed).standard_normal((2, base.steps))

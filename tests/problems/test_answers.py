@@ -34,9 +34,6 @@ def names_of(sets):
     return [(one.data.settings_name, tuple(answer.name for answer in one.answers)) for one in sets]
 
 
-# ---- what is read ---------------------------------------------------------------------------------------------------
-
-
 def test_settings_of_a_program_are_read_with_their_problems_in_the_order_of_the_pack(tmp_path):
     answered(tmp_path / "coarse", settings_name="coarse", names=("column", "locked"))
     fine = answered(tmp_path / "fine", settings_name="fine", step_s={"rocking": 1e-3}, names=("rocking",))
@@ -151,9 +148,6 @@ def test_a_layout_is_where_its_metadata_say(tmp_path):
 )
 def test_names_of_folders_lead_nowhere_else(text, name):
     assert folder_name(text) == name
-
-
-# ---- what is kept ---------------------------------------------------------------------------------------------------
 
 
 def test_an_answer_is_kept_once_and_not_overwritten(tmp_path):
@@ -327,9 +321,6 @@ def test_tables_alone_answer_problems_and_scenes_of_ones_own(tmp_path):
     with pytest.raises(InputError) as caught:
         read_tables(tmp_path / "mine.csv", [own, problem("locked")])
     assert caught.value.field == "asked"
-
-
-# ---- boxes on a ground -----------------------------------------------------------------------------------------------
 
 
 POSE = ("x", "y", "angle")

@@ -185,15 +185,8 @@ def test_what_is_tried_is_as_before():
         for cheap in (True, False):
             tried = [*module.of_data(runs, base, cheap), *module.of_damping(runs, base)]
             for change in (*tried, *module.of_output(runs, base, COLUMNS[: 1 + cheap])):
-                found.append(
-                    [
-                        change.id,
-                        change.starts,
-                        change.nudge,
-                        change.value(0.3),
-                        re.findall(r"[\d.]+", change.words(1.3)),
-                    ]
-                )
+                numbers = re.findall(r"[\d.]+", change.words(1.3))
+                found.append([change.id, change.starts, change.nudge, change.value(0.3), numbers])
                 found.append([change.changed(u) for u in (0.07, -0.4, 2.9, 7.0, -6.8, change.starts[-1])])
     for scene in (SCENE, OPENING, load_scene("field-rocking"), load_scene("field-joint")):
         for base in Runs(scene, STANDARD).schemes():

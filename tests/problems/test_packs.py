@@ -29,8 +29,7 @@ def test_a_minor_version_adds_problems_only():
 
 
 @pytest.mark.parametrize(
-    "values",
-    [{"block.density": 2701.0}, {"contact.stiffness": 1.01e9}, {"time.step": 0.001}, {"time.steps": 49}],
+    "values", [{"block.density": 2701.0}, {"contact.stiffness": 1.01e9}, {"time.step": 0.001}, {"time.steps": 49}]
 )
 def test_another_question_has_another_digest(values):
     one = problem("locked")
