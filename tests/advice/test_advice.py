@@ -2,12 +2,14 @@
 
 import math
 
+import numpy as np
 import pytest
 from conftest import thinned
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from validation import InputError, advise, damping, load_scene
+from validation.advice.advice import Search
 
 BASE = load_scene("figures-3-4").with_values({"time.step": 0.002})
 LIGHT = load_scene("figure-9").with_values({"time.gg": 0.98})
@@ -104,6 +106,15 @@ def test_the_scheme_family_is_the_boundary_of_14():
     solution = advise(BASE, damping=0.05, solve_for="scheme").solutions[0]
     assert solution.alpha == pytest.approx((0.5 + solution.delta) ** 2 / 4, rel=1e-15)  # above it roots turn real
     assert solution.settings == {"time.alpha": solution.alpha, "time.delta": solution.value}
+
+
+def test_what_is_sought_ends_where_the_highest_mode_would_grow():
+    """Central differences up to w dt = 2, from either side."""
+    for omega, end in ((lambda s: s, 2.0), (lambda s: 1 / s, 0.5)):
+        search = Search(np.linspace(0.1, 3.0, 30), lambda s, omega=omega: (omega(s), 0.0, 0.5, 1.0), dict, "", 1.0)
+        coordinates, ratios = search.samples
+        ends = coordinates[np.isfinite(ratios)][[0, -1]]
+        assert ends == pytest.approx([0.1, end] if end == 2 else [end, 3.0], rel=1e-9)
 
 
 def test_no_damping_wanted_of_a_scheme_that_has_none():

@@ -148,6 +148,7 @@ def test_a_history_departs_by_enough_rows_for_a_cause():
     moved[:, 20:] *= 1.002
     search = Swing(moved, (LOAD,))
     assert search.departing.tolist() == list(range(20, 60))
+    assert search.judged(Fitted(fixed("gg", "", {}), 0.0, 0.0)).ratio > 1
     assert search.departure(RunVerdict(search, False)) == Departure(21, "offset")
     assert Swing(scene).departure(RunVerdict(search, True)) is None
 

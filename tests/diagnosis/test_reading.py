@@ -27,10 +27,11 @@ def test_the_measured_point_of_ntdda(tmp_path):
     np.testing.assert_allclose(found.steps, 0.002)
     up = np.array([0.1, -0.2, -0.3, 0.15, -0.4])
     aside = np.array([0.03, 0.05, -0.02, 0.01, 0.2])
-    rates = [np.diff(way, prepend=0.0) / 0.5 for way in (aside, up)]
+    dt = np.array([0.5, 0.4, 0.6, 0.3, 0.7])
+    rates = [np.diff(way, prepend=0.0) / dt for way in (aside, up)]
     n = np.arange(1, 6)
     for sizes, rows in ((np.abs(up), n), (np.abs(up), n[[0, 1, 3, 4]]), (np.hypot(up, aside), n)):
-        table = np.array([n, 0.5 * n, 0 * n + 0.5, 7 + aside, 5 + up, sizes, *rates, 0 * n]).T[rows - 1]
+        table = np.array([n, np.cumsum(dt), dt, 7 + aside, 5 + up, sizes, *rates, 0 * n]).T[rows - 1]
         point = "\n".join(" ".join(map(repr, row)) for row in table.tolist())
         given = read(written(tmp_path, f"measpoint1 = [\n{point}\n];"))
         assert given.displacement == pytest.approx(up[rows - 1]) and given.sideways == pytest.approx(aside[rows - 1])

@@ -93,9 +93,8 @@ def measured(expected_values: Array, recorded: Array, rows: np.ndarray, noise: f
     factor on r - s (amplitude), a stretch of time (phase), a further decay (damping).
     """
     with np.errstate(all="ignore"):
-        expected_values = np.nan_to_num(expected_values, posinf=1e300, neginf=-1e300)
         size = largest(recorded) or 1.0
-        r = np.clip(expected_values, -1e3 * size, 1e3 * size)
+        r = np.clip(np.nan_to_num(expected_values), -1e3 * size, 1e3 * size)
     d = recorded - r
     tolerance = max(DEPARTED * size, NOISE * noise)
     beyond = np.flatnonzero(np.abs(d) > tolerance)
