@@ -117,6 +117,7 @@ def of_column(scene):
     yield [*alarms_of(scene)]
     if scene.column.law == "bonded":
         yield advise_wave(scene, 12.0, 0.1).as_dict(), advise_wave(scene, 40.0, 1e-3, 20.0).as_dict()
+        yield advise_wave(scene, 12.0, 0.99, 0.1, 0.9).as_dict()
     else:
         known = columns.limits(scene)
         yield vars(known)

@@ -12,7 +12,17 @@ from oracles.kept_answers import said
 from oracles.stand_ins import assert_kept, share, summed
 
 from validation import load_scene
-from validation.diagnosis import causes, evidence, families, one_change, readings, schemes, search
+from validation.diagnosis import (
+    causes,
+    contact_force,
+    evidence,
+    families,
+    one_change,
+    readings,
+    schemes,
+    search,
+    stepping,
+)
 from validation.diagnosis.evidence import Departure
 from validation.diagnosis.fits import bar
 from validation.diagnosis.fits.fit import NAMED, NUMBERS, _side, bounds, is_factor, named
@@ -31,6 +41,7 @@ BLOCK = Rectangle(2.0, 1.5, 2700.0, 1e9, 0.0, False, 2e9, 1.5e9, 5e6)
 OWN = Variant(0.5, 1.0, 0.99)
 SCENE = load_scene("figures-3-4")
 N = np.arange(1, 9)
+STEPS = np.full(40, 5e-4)
 IDS = ("gg", "scheme", "hht", "contact-dashpot", "springs-factor", "own-weight", "viscous-damping", "dead-band")
 
 MOVES = [
@@ -150,6 +161,37 @@ def aliases():
                 for best in several:
                     one, names = search._canonical(target, best, several)
                     yield one.ids, [*names], str(search._scheme_alone(best))
+
+
+def forces():
+    """Yield forces of contact that opens, by the signs of both gaps."""
+    start, free = np.array([*itertools.product((-2e-3, 0.0, 1e-3), (-3e-3, -1e-5, 0.0, 2e-3, 9e-3))]).T
+    for method in ("impact", "energy-conserving", "rigid", "implicit", "dashpot"):
+        for dashpot, clipped in ((0.0, True), (7e5, True), (7e5, False)):
+            contact = contact_force.Contact(3e8, dashpot, 0.4, np.array(clipped), 2e-9, 5e-7)
+            gaps = contact_force.Gaps(start, 0.7 * start - 3e-4, free, 1e-3 - 0.2 * free)
+            with np.errstate(invalid="ignore"):  # of two gaps of nothing
+                yield [part.tolist() for part in contact_force.force_of(method, contact, gaps)]
+
+
+ODD = {"softness": 0.3, "tied": False, "weight": 0.4, "gravity": 0.3, "load": 0.7, "ramp": 0.03, "density": 0.8}
+ODD |= {"young": 0.7, "poisson": 0.1, "other_plane": True, "side": 1.2, "tall": 0.8, "inertia": 0.6, "viscous": 9.0}
+ODD |= {"structural": 3e-4, "updated": True, "band": 1e-3, "hold": 2e-4, "lags": "opening", "reset": True, "parts": 2}
+ODD |= {"discounted": "(7)", "secant": True, "strain_load": 0.6, "coupling": 0.7, "kept": "springs", "exact": True}
+ODD |= {"shift": 0.5, "point": -0.4, "late": 1.0, "pressure_factor": 0.9, "displacement_factor": 1.1}
+
+
+def variants():
+    """Yield histories of variants with one odd number each, in contact that holds or opens, on a base, of a scheme."""
+    block = replace(BLOCK, poisson=0.2, gravity=9.81)
+    opens = {"opens": True}
+    mean_gap = {"family": "hht", "spectral": 0.2, "contact": "mean gap"}
+    for about in ({}, opens, opens | {"base": 3.0, "softness": 0.2}, opens | mean_gap):
+        run = stepping.histories(
+            block, [replace(OWN, **about, **{k: v}) for k, v in ODD.items() if k not in about], STEPS
+        )
+        for columns in (run.displacement, run.pressure, run.open):
+            yield np.linalg.norm(columns, axis=0).tolist()
 
 
 class World:
@@ -375,5 +417,5 @@ def same_rows():
 
 def test_rules_decide_as_before():
     tables = (departures, digits, decisions, names, fits, parts, readings_of_rows, same_rows, scenes, searches)
-    tables += (acceptance, motions, aliases)
+    tables += (acceptance, motions, aliases, forces, variants)
     assert_kept(KEPT, "rules", {table.__name__: summed(said([*table()], 0.0)) for table in tables})

@@ -9,7 +9,7 @@ from oracles.few_moves import FEW, among, only
 from oracles.program_scenes import scene_of
 from oracles.sliding_block import Plain, run
 
-from validation.diagnosis import judgement
+from validation.diagnosis import judgement, search
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
 
@@ -21,7 +21,8 @@ def judged(base=PLAIN, pressure=True, **slip):
 
 
 def answer_to(base, columns):
-    return compare(scene_of(base), Foreign(base.dt * np.arange(1, base.steps + 1), *columns))
+    scene = scene_of(base).with_values({"contact.law": "unilateral"} if base.opens else {})
+    return compare(scene, Foreign(base.dt * np.arange(1, base.steps + 1), *columns))
 
 
 def test_a_tolerance_decides_what_counts_as_the_same(monkeypatch):
@@ -128,11 +129,33 @@ def test_a_row_printed_twice_is_told_by_its_step(slip, causes, monkeypatch):
 def test_white_noise_on_a_right_history_is_noise(base, size, seed):
     noise = np.random.default_rng(seed).standard_normal((2, base.steps))
     columns = [x + size * np.max(np.abs(x)) * e for x, e in zip(run(base), noise, strict=True)]
-    assert answer_to(base, (columns[0], columns[1])).causes == []
+    assert answer_to(base, columns).causes == []
 
 
 def test_five_digits_in_millimetres_are_a_unit_not_a_load():
     displacement, _ = run(STIFF)
-    time = STIFF.dt * np.arange(1, STIFF.steps + 1)
-    answer = compare(scene_of(STIFF), Foreign(time, printed(1e3 * displacement, 5)))
-    assert answer.causes == ["unit"]
+    assert answer_to(STIFF, (printed(1e3 * displacement, 5),)).causes == ["unit"]
+
+
+OPENS = Plain(steps=36, dt=0.001, p=3e9, alpha=0.25, delta=0.5, consistent=True, opens=True)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("slip", "cause"),
+    [({"lags": "opening"}, "late-opening"), ({"lags": "switching"}, "late-contact"), ({"band": 1e-3}, "dead-band")],
+    ids=str,
+)
+def test_what_switches_a_contact_is_named(slip, cause):
+    assert judged(OPENS, **slip).causes == [cause]
+
+
+@pytest.mark.parametrize("steps", [20, pytest.param(36, marks=pytest.mark.long)])
+def test_a_tension_that_a_contact_bears_is_told_with_what_gives_the_same_rows(steps, monkeypatch):
+    if steps == 20:
+        monkeypatch.setattr(search, "moves", lambda *given: [])
+    answer = judged(replace(OPENS, steps=steps), tension=1e6)
+    assert answer.causes == ["opening-tension"]
+    low, high = answer.intervals["opening-tension"]
+    assert low <= 1e6 * 2 / OPENS.side <= high  # two corners, over the length of the base
+    assert f"({low:.3g} to {high:.3g} Pa" in answer.sentence

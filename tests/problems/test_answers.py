@@ -76,9 +76,6 @@ def test_an_answer_to_a_problem_that_changed_is_stale_and_the_others_stand(tmp_p
     assert names_of(read_sets(early)) == [("default", ("locked", "rocking"))]
 
 
-# ---- what is refused ------------------------------------------------------------------------------------------------
-
-
 def spoilt(place, name, change):
     path = place / name
     path.write_text(change(path.read_text()))
@@ -166,8 +163,6 @@ def test_an_answer_is_kept_once_and_not_overwritten(tmp_path):
     assert (place / "locked.csv").read_bytes() == kept
     assert [path.name for path in place.parent.iterdir()] == ["default"]  # neither is half of them written
 
-
-# ---- tables ---------------------------------------------------------------------------------------------------------
 
 Rows = list[list[str]]
 
