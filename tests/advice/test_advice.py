@@ -109,8 +109,7 @@ def test_the_scheme_family_is_the_boundary_of_14():
 
 
 def test_what_is_sought_ends_where_the_highest_mode_would_grow():
-    """Central differences up to w dt = 2, from either side."""
-    for omega, end in ((lambda s: s, 2.0), (lambda s: 1 / s, 0.5)):
+    for omega, end in ((lambda s: s, 2.0), (lambda s: 1 / s, 0.5)):  # of central differences
         search = Search(np.linspace(0.1, 3.0, 30), lambda s, omega=omega: (omega(s), 0.0, 0.5, 1.0), dict, "", 1.0)
         coordinates, ratios = search.samples
         ends = coordinates[np.isfinite(ratios)][[0, -1]]

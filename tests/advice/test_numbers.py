@@ -55,6 +55,7 @@ PAGES = (  # scene, values, penetration
     ("slope-drag", {"contact.stiffness": 1e9}),
     ("slope-drag", {"load.slope": 10.0, "time.gg": 1.0}, 2e-5),
     ("columns-weight", {"time.gg": 0.9}),
+    ("columns-slips", {}),
 )
 
 

@@ -94,7 +94,7 @@ def test_the_number_of_the_candidate_that_gives_a_history_is_found_to_its_digits
     assert verdict.best == pytest.approx({"m": 1.3 * 1.17}, rel=1e-9)
     assert verdict.left == pytest.approx(0, abs=1e-10)
     search.patience = 99
-    assert len(search.explanations()) == len(changes)  # of none is too little left
+    assert len(search.explanations()) == len(changes)
     slow = Swing(columns_of({"m": 1.3 * 1.17}), changes)
     slow.is_slow = True
     assert named(slow) == [("density-factor", 1.17)]
@@ -167,6 +167,10 @@ def test_rows_are_judged_up_to_where_two_correct_codes_agree():
     assert stated == pytest.approx(np.broadcast_to(0.3 + 1e-8 * sizes, scene.shape), rel=1e-12)
     printed = Swing(np.round(scene, 4)).allowed
     assert printed[0] == pytest.approx(np.full(ROWS, 1e-4 + 1e-8 * np.max(np.abs(scene[0]))), rel=1e-3)
+    near = Swing(scene * (1 + 5e-8), apart=1e-11)
+    unit = 1e-8 * sizes + 2 * np.maximum.accumulate(1e5 * apart, axis=1)[:, : near.rows]
+    own = near.judged(Fitted(fixed("gg", "", {}), 0.0, 0.0))
+    assert own.ratio == pytest.approx(np.max(5e-8 * np.abs(scene[:, : near.rows]) / unit), rel=1e-4)
     changed = scene.copy()
     changed[:, beyond:] = 0.0
     assert Swing(changed, apart=1e-16).is_scene()

@@ -93,13 +93,9 @@ def test_options_that_say_nothing(text):
         (parse_scale if "=n" in text or "=0" in text else parse_columns)(text)
 
 
-def history_at(times):
-    return Foreign(np.asarray(times, dtype=float), np.ones(len(times)))
-
-
 def test_a_program_s_own_steps_may_begin_late():
-    late = [one for one in steppings(history_at(0.0007 * np.arange(5, 13)), 0.002) if " 5" in one.note]
-    (rows,) = (one.rows for one in late)
+    foreign = Foreign(0.0007 * np.arange(5, 13), np.ones(8))
+    (rows,) = (one.rows for one in steppings(foreign, 0.002) if " 5" in one.note)
     np.testing.assert_array_equal(rows, np.arange(4, 12))
 
 

@@ -11,6 +11,7 @@ from oracles.stand_ins import assert_kept, summed
 
 from validation import load_scene
 from validation.diagnosis import slopes
+from validation.diagnosis.beside import RunVerdict
 from validation.diagnosis.evidence import Departure
 from validation.diagnosis.numbers import fixed
 from validation.diagnosis.one_change import Fitted
@@ -138,6 +139,9 @@ def test_an_answer_names_the_law_with_what_each_leaves_and_when_both_corners_are
     assert stage.numbers["lagged"] < 1e-6 < 1e-4 < stage.numbers["consistent"]
     assert answer.departure == Departure(6, "offset")  # the first row that lags, on what surrounds the block
     assert answer.opened is None
+    corrected = beside(made(theirs.values(SCENE)))
+    corrected.reading = replace(corrected.reading, corrected=("sign",))
+    assert corrected.departure(RunVerdict(corrected, True)) == Departure(1, "offset")
     assert told(made({})).causes == []
     corners = np.ones((2, STEPS))
     corners[:, 7:10] = corners[0, 3] = 0.0

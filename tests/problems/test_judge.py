@@ -119,12 +119,6 @@ def test_a_column_that_is_absent_is_told():
     assert len({*reasons}) == 3 and reasons[2] == reasons[3]
 
 
-def test_numbers_that_people_understand():
-    asked = short("opening")
-    told = {number.name: number for number in judge(asked, standard(asked).exact).quantities}
-    assert told["openings"].value == told["openings"].exact == 2
-
-
 def test_a_band_ends_where_the_data_do_not_determine_the_motion_any_more():
     t = 0.01 * np.arange(1.0, 401)
     found = band(t, np.sin(30 * t), {"density": np.sin(30.3 * t)})

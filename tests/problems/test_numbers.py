@@ -73,7 +73,7 @@ ROWS = (
 
 
 def test_few_rows_are_measured_as_before():
-    """Openings, rebounds, arrivals, landings that come or are drawn on, poles."""
+    """Openings, rebounds, arrivals, landings, poles."""
     t = 0.1 * np.arange(1, 41)
     found = [quantities._pole(t, 2 + np.exp(-0.3 * t) * np.cos(3 * t)), quantities._pole(t[:1], t[:1])]
     for x in np.array(ROWS):
