@@ -12,7 +12,6 @@ from validation import InputError, advise, damping, load_scene
 from validation.advice.advice import Search
 
 BASE = load_scene("figures-3-4").with_values({"time.step": 0.002})
-LIGHT = load_scene("figure-9").with_values({"time.gg": 0.98})
 EXAMPLES = settings(max_examples=60, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
 SCHEMES = st.sampled_from([(0.5, 1.0), (0.25, 0.5), (0.5625, 1.0), (0.3025, 0.6), (0.7, 1.3), (1 / 6, 0.5), (1.1, 1.7)])
 
@@ -117,7 +116,7 @@ def test_what_is_sought_ends_where_the_highest_mode_would_grow():
 
 
 def test_no_damping_wanted_of_a_scheme_that_has_none():
-    undamped = LIGHT.with_values({"time.gg": 1.0})
+    undamped = load_scene("figure-9").with_values({"time.gg": 1.0})
     advice = advise(undamped, damping=0.0)
     assert advice.reachable and advice.solutions[0].settling_steps is None
     assert advise(undamped, damping=0.01, solve_for="dt").reachable is False

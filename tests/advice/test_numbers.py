@@ -13,12 +13,11 @@ from oracles.pages import NUMBER
 from oracles.stand_ins import Numbers, assert_kept, numbers_in, share, summed
 
 from validation import advise, advise_across, damping, load_scene
-from validation.advice import across, budget, columns, contact, contact_page, friction, goals, overview
+from validation.advice import across, budget, columns, contact, contact_page, friction, goals, overview, spectra
 from validation.advice.coarse import coarse_alarms
 from validation.advice.draft import KINDS, ROCKS, draft
 from validation.advice.hooks import AdviceHooks
 from validation.advice.plain import in_rows
-from validation.advice.spectra import dda_modes
 from validation.advice.wave_advice import advise_wave
 from validation.theory.stepping import Stepping
 
@@ -28,6 +27,7 @@ BLOCKS = {
     "plain": {},
     "discount": {"time.gg": 0.97, "time.alpha": 0.36, "time.delta": 0.7},
     "rate": {"time.gg_rate": 30.0, "time.alpha": 0.25, "time.delta": 0.5, "block.poisson": 0.2},
+    "lost": {"time.gg": 0.0},
     "scheme": {"time.scheme": "chung-hulbert", "time.rho_inf": 0.4},
     "explicit": {"time.scheme": "leapfrog", "time.start": "consistent", "time.step": 5e-4},
     "opens": {"contact.law": "unilateral", "block.velocity": -0.7, "contact.gap": 0.01},
@@ -148,7 +148,7 @@ def of_lines():
 
 def of_schemes(scene):
     """Yield which schemes damp a scene, and what is known of some."""
-    modes = dda_modes(scene)
+    modes = spectra.dda_modes(scene)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(across, "LADDER", {"wbz": (0.5,)})
         patch.setattr(across, "IMPACTS", (1.5, 1e5))
@@ -231,6 +231,8 @@ def numbers_of_advice(step=0.002):
     of_facts = [overview._facts(scene) for scene in (*map(coarse.with_values, FACTS), slope)]
     found["facts"] = [[fact.subject, fact.part, fact.sentence] for facts in of_facts for fact in facts]
     found["coarse"] = of_coarse(PAPER.with_values(GRANITE))
+    levels = itertools.product((0.01, 1.0, 1.3), (0.0, 0.7, 1.0, 1.2))
+    found["levels"] = [spectra.steps_to(*both) for both in levels]
     found["lines"] = [summed(numbers_in([*of_lines()]))]
     found["across"] = of_schemes(block)
     found["goal quake"] = of_goal(block, "quake", ELEMENTS=2, REFINEMENTS=2, COARSEST=12)

@@ -28,6 +28,7 @@ from validation.errors import InputError
 STEP = 0.01
 ROWS = 60
 SCENE = load_scene("figures-3-4").with_values({"time.gg": 0.99})
+OWN = {"m": 1.3, "k": 1700.0, "q": 25.0, "d": 0.7}
 
 
 class Swing(SceneSearch):
@@ -55,18 +56,17 @@ class Swing(SceneSearch):
 
 def columns_of(values, steps=ROWS):
     """Return displacement and pressure of a swing."""
-    n = {"m": 1.3, "k": 1700.0, "q": 25.0, "d": 0.7, "parts": 1} | values
+    n = OWN | {"parts": 1} | values
     t = STEP / n["parts"] * np.arange(1, n["parts"] * steps + 1)
     x = n["q"] / n["k"] * (np.exp(-n["d"] * t) * np.cos(np.sqrt(n["k"] / n["m"]) * t) - 1)
     return np.array([x, -n["k"] * x])
 
 
-def factor(name, key, power=1.0, starts=(0.7, 1.4), own=None):
+def factor(name, key, power=1.0, starts=(0.7, 1.4)):
     """Return the change by which a number is larger by a power of a factor."""
-    own = own or {"m": 1.3, "k": 1700.0, "q": 25.0, "d": 0.7}[key]
     words = f"{name} {{:.4g}}".format
     return CandidateChange(
-        name, words, math.exp, lambda u: {key: own * math.exp(power * u)}, tuple(map(math.log, starts))
+        name, words, math.exp, lambda u: {key: OWN[key] * math.exp(power * u)}, tuple(map(math.log, starts))
     )
 
 

@@ -47,11 +47,9 @@ IDS = ("gg", "scheme", "hht", "contact-dashpot", "springs-factor", "own-weight",
 MOVES = [
     *(Move("gg", {"gg": 1.0}), Move("scheme", {}, ("alpha", "delta"), (0.3,)), *FEW),
     *(Move("start", {"start": "consistent"}), Move("hht", {"family": "hht", "spectral": 0.2})),
-    *(
-        Move("generalised-alpha", {"family": "chung-hulbert"}, ("spectral",), (0.5, 0.9)),
-        Move("load-factor", {"load": 0.8}),
-    ),
-    *(Move("young-factor", {}, ("young",), (1.3,)), Move("reported-point", {"point": 1.0})),
+    Move("generalised-alpha", {"family": "chung-hulbert"}, ("spectral",), (0.5, 0.9)),
+    *(Move("load-factor", {"load": 0.8}), Move("young-factor", {}, ("young",), (1.3,))),
+    Move("reported-point", {"point": 1.0}),
     Move("dead-band", {"opens": True, "band": 1e-3, "reopening": search.OTHER_PROGRAMS}),
 ]
 
@@ -108,14 +106,8 @@ def digits():
     for rounding, spread in ((0.0, 0.2), (0.3, 0.0), (0.3, 0.2)):
         of_rows = bar.Bar(np.full(48, rounding), 2e6, 5.0, spread, np.arange(48) != 7)
         yield of_rows.allowed, of_rows.deviation()
-        for remainder in (
-            0.15 + 0 * draw,
-            0.16 + 0 * draw,
-            0 * draw,
-            0.1 * draw,
-            0.2 * np.sin(0.2 * np.arange(48)),
-            0.3 * draw,
-        ):
+        constant = [x + 0 * draw for x in (0.15, 0.16, 0)]
+        for remainder in (*constant, 0.1 * draw, 0.2 * np.sin(0.2 * np.arange(48)), 0.3 * draw):
             for further in (0.0, 0.055, 0.065, 1.15, 1.25):
                 rows = remainder + further * (np.arange(48) == 20)
                 yield of_rows.holds(rows), of_rows.outlying(rows).tolist(), of_rows.deviation(rows)

@@ -272,6 +272,7 @@ def test_what_other_programs_write_is_read(written, tmp_path):
         ({"settings_name": 61 * "x"}, "settings_name", 61 * "x"),
         ({"step_s": "0.002"}, "step_s", "'0.002'"),
         ({"not_reported": {"locked": ["pressure"]}}, "not_reported.locked", "'pressure'"),
+        ({"not_reported": {"locked": "pressure"}}, "not_reported.locked", "'pressure'"),
         (
             {"not_reported": {"locked": ["displacement_m", "contact_pressure_Pa"]}},
             "not_reported.locked",

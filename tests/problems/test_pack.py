@@ -31,7 +31,7 @@ def written(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(pack, "names", lambda: (*QUICK, *BOXES))
         told = []
-        assert pack.write_pack(directory, lambda *given: told.append(given)) == 6
+        assert pack.write_pack(directory, lambda *x: told.append(x)) == 6
         assert told == [(number, 6, name) for number, name in enumerate((*QUICK, *BOXES))]
     return directory
 
