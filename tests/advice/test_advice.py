@@ -2,15 +2,16 @@
 
 import math
 
+import numpy as np
 import pytest
 from conftest import thinned
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from validation import InputError, advise, damping, load_scene
+from validation.advice.advice import Search
 
 BASE = load_scene("figures-3-4").with_values({"time.step": 0.002})
-LIGHT = load_scene("figure-9").with_values({"time.gg": 0.98})
 EXAMPLES = settings(max_examples=60, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
 SCHEMES = st.sampled_from([(0.5, 1.0), (0.25, 0.5), (0.5625, 1.0), (0.3025, 0.6), (0.7, 1.3), (1 / 6, 0.5), (1.1, 1.7)])
 
@@ -106,8 +107,16 @@ def test_the_scheme_family_is_the_boundary_of_14():
     assert solution.settings == {"time.alpha": solution.alpha, "time.delta": solution.value}
 
 
+def test_what_is_sought_ends_where_the_highest_mode_would_grow():
+    for omega, end in ((lambda s: s, 2.0), (lambda s: 1 / s, 0.5)):  # of central differences
+        search = Search(np.linspace(0.1, 3.0, 30), lambda s, omega=omega: (omega(s), 0.0, 0.5, 1.0), dict, "", 1.0)
+        coordinates, ratios = search.samples
+        ends = coordinates[np.isfinite(ratios)][[0, -1]]
+        assert ends == pytest.approx([0.1, end] if end == 2 else [end, 3.0], rel=1e-9)
+
+
 def test_no_damping_wanted_of_a_scheme_that_has_none():
-    undamped = LIGHT.with_values({"time.gg": 1.0})
+    undamped = load_scene("figure-9").with_values({"time.gg": 1.0})
     advice = advise(undamped, damping=0.0)
     assert advice.reachable and advice.solutions[0].settling_steps is None
     assert advise(undamped, damping=0.01, solve_for="dt").reachable is False

@@ -23,9 +23,6 @@ def raised(scene, rows, histories=None):
     return {alarm.kind: alarm for alarm in alarms([scene], finished)}
 
 
-# ---- tension and ringing ------------------------------------------------------------------------------------------
-
-
 def pulling(least, when, duration):
     return {"pressure.minimum": least, "pressure.minimum_time": when, "pressure.tension_time": duration}
 
@@ -37,7 +34,9 @@ def test_hidden_tension_is_in_megapascals_with_its_time_and_its_duration():
         "fem:full": pulling(-0.5e6, 0.1, 0.2),
         "bar": pulling(-1.25e6, 0.015, 0.003),
         "continuum": pulling(-4.0, 0.1, 0.2),  # below a millionth of the load: rounding
-        "fem": {"pressure.minimum": 0.0, "pressure.minimum_time": "undefined", "pressure.tension_time": "undefined"},
+        "fem": pulling(-0.5e6, 0.1, "undefined"),
+        "layers": pulling(-0.5e6, "undefined", 0.2),
+        "bars-events": pulling("undefined", 0.1, 0.2),
     }
     alarm = raised(SCENE, rows)[TENSION]
     assert re.findall(r"[\d.]+", alarm.sentence) == ["0.432", "0.0025", "0.0375", "1.25", "0.015", "0.003"]
@@ -72,6 +71,3 @@ def test_what_has_no_damping_ratio_of_its_own_is_not_split():
         assert ("kinetic" in text) is (kinetic != 0)
     for ratio in (0.999, 1.0):
         assert ("overdamped" in runs(replace(mode, damping=ratio))) is (ratio == 1.0)
-
-
-# ---- the damping budget -------------------------------------------------------------------------------------------

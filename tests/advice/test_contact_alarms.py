@@ -56,6 +56,7 @@ def test_the_time_constant_of_the_drag_is_that_of_a_free_flight_of_dda(gg):
 
 
 def test_a_landing_is_not_known_for_every_scene():
+    assert friction.sliding(SCENES["slides"].with_values({"load.gravity": 0.0, "load.slope": 0.0})) is None
     found = contact.restitution(PAPER)
     assert found.low < found.mean < found.high < found.own
     rules = {rule: PAPER.with_values(AVERAGE | {"contact.rule": rule}) for rule in ("implicit", "energy-conserving")}

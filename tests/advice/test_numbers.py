@@ -1,6 +1,7 @@
 """What advice is known without a run, as numbers kept in `numbers.toml` beside this file; `KEEP_PAGES=1` renews it."""
 
 import itertools
+import re
 import tomllib
 from collections.abc import Iterator
 from itertools import cycle
@@ -12,12 +13,11 @@ from oracles.pages import NUMBER
 from oracles.stand_ins import Numbers, assert_kept, numbers_in, share, summed
 
 from validation import advise, advise_across, damping, load_scene
-from validation.advice import across, budget, columns, contact, contact_page, friction, goals, overview
+from validation.advice import across, budget, columns, contact, contact_page, friction, goals, overview, spectra
 from validation.advice.coarse import coarse_alarms
 from validation.advice.draft import KINDS, ROCKS, draft
 from validation.advice.hooks import AdviceHooks
 from validation.advice.plain import in_rows
-from validation.advice.spectra import dda_modes
 from validation.advice.wave_advice import advise_wave
 from validation.theory.stepping import Stepping
 
@@ -27,6 +27,7 @@ BLOCKS = {
     "plain": {},
     "discount": {"time.gg": 0.97, "time.alpha": 0.36, "time.delta": 0.7},
     "rate": {"time.gg_rate": 30.0, "time.alpha": 0.25, "time.delta": 0.5, "block.poisson": 0.2},
+    "lost": {"time.gg": 0.0},
     "scheme": {"time.scheme": "chung-hulbert", "time.rho_inf": 0.4},
     "explicit": {"time.scheme": "leapfrog", "time.start": "consistent", "time.step": 5e-4},
     "opens": {"contact.law": "unilateral", "block.velocity": -0.7, "contact.gap": 0.01},
@@ -38,24 +39,28 @@ COLUMNS = {
     "shaken": ("columns-shaken", {}),
     "stack": ("field-stack", {"column.gravity": 9.81, "time.gg": 0.99}),
     "slips": ("columns-slips", {"time.alpha": 0.25, "time.delta": 0.5}),
-    "cradle": ("field-cradle", {"time.alpha": 0.25, "time.delta": 0.5}),
+    "explicit": ("field-cradle", {"time.alpha": 0.0, "time.delta": 0.5}),
+    "cradle": ("field-cradle", {"time.alpha": 0.25, "time.delta": 0.5, "column.gravity": 9.81}),
 }
 STEPPINGS = (
     *(Stepping(0.002, 0.25, 0.5), Stepping(0.003, 0.3, 0.6, 0.95), Stepping(0.01, 0.25, 0.5, 0.8)),
     *(Stepping(0.002, 0.5, 1.0), Stepping.named("chung-hulbert", 0.02, rho_inf=0.3)),
 )
 TARGETS = ((0.02, "dt"), (0.3, "gg"), (0.1, "scheme"), (1.9, "dt"))
-SLOPES = ("slope-drag", "creep-steps", "slope-sliding")
+SYMBOLS = re.compile(r"\b(?:dt|gg|delta|alpha)\b")
+SLOPES = {"slope-drag": {}, "creep-steps": {}, "slope-sliding": {}, "slope-threshold": {"time.gg": 0.0}}
 PAGES = (  # scene, values, penetration
     ("unlocked-constant", {"time.step": 1e-3, "contact.stiffness": 1e11, "time.gg": 0.97, "contact.gap": 0.3}),
     ("unlocked-average", {"time.step": 1e-3, "block.velocity": -2.0, "contact.band": [0.0, 1e-4]}, 3e-4),
     ("slope-drag", {"contact.stiffness": 1e9}),
     ("slope-drag", {"load.slope": 10.0, "time.gg": 1.0}, 2e-5),
     ("columns-weight", {"time.gg": 0.9}),
+    ("columns-slips", {}),
 )
 
 
 FALLS = {"contact.law": "unilateral", "contact.gap": 0.01, "block.velocity": -0.7}
+OTHER = {"time.alpha": 0.36, "time.delta": 0.7}
 RUNS = {  # scenes whose runs are made
     "locked": ("figures-3-4", {}),
     "opens": ("figures-3-4", FALLS | {"time.step": 0.02, "time.gg": 0.97, "contact.band": [0.0, 1e-4]}),
@@ -67,6 +72,7 @@ RUNS = {  # scenes whose runs are made
     ),
     "creeps": ("creep-steps", {"contact.rules": "lagged", "time.steps": 4000}),
     "slides": ("slope-drag", {}),
+    "stands": ("creep-steps", {"time.step": 1e-5, "time.gg": 0.99}),
     "stack": ("field-stack", {"column.gravity": 9.81}),
 }
 GRANITE = {"block.side": 1.2, "block.young": 5e10, "block.poisson": 0.25, "contact.stiffness": 5e11}
@@ -99,7 +105,8 @@ def of_block(scene):
     if scene.contact.law == "locked":
         yield damping(scene).as_dict()
         for target, solve_for in TARGETS if scene.time.scheme == "newmark" else ():
-            yield advise(scene, damping=target, solve_for=solve_for).as_dict()
+            advice = advise(scene, damping=target, solve_for=solve_for)
+            yield advice.as_dict(), SYMBOLS.findall(advice.sentence)
     if scene.time.scheme == "newmark":
         landing = contact.restitution(scene)
         yield contact.omega(scene), landing and [landing.low, landing.mean, landing.high, landing.own]
@@ -111,11 +118,13 @@ def of_column(scene):
     yield [*alarms_of(scene)]
     if scene.column.law == "bonded":
         yield advise_wave(scene, 12.0, 0.1).as_dict(), advise_wave(scene, 40.0, 1e-3, 20.0).as_dict()
+        yield advise_wave(scene, 12.0, 0.99, 0.1, 0.9).as_dict()
     else:
         known = columns.limits(scene)
         yield vars(known)
         for resting in (None, columns.Rest(0.3, 0.9, 2e-3), columns.Rest(None, 0.9, 2e-3)):
             yield [*columns.advised(scene, known, resting)]
+        yield columns._at_rest(scene.column)
 
 
 def of_runs(scene):
@@ -132,14 +141,14 @@ def of_runs(scene):
 def of_lines():
     """Yield rows of columns whose last one is wrapped beside the others, or below its line."""
     lines = [("goal", "steps", "what it is for, in words that go on and on"), ("impact", "7", "a landing"), ()]
-    for width, indent, right in itertools.product((None, 20, 47, 58, 200), ("", "   "), ((), (1,))):
+    for width, indent, right in itertools.product((None, *range(20, 60), 200), ("", "   "), ((), (1,))):
         yield in_rows(lines, width, indent, right)
     yield in_rows([()], 30), in_rows([("of one column, which is wrapped where there is no room",)] * 2, 40)
 
 
 def of_schemes(scene):
     """Yield which schemes damp a scene, and what is known of some."""
-    modes = dda_modes(scene)
+    modes = spectra.dda_modes(scene)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(across, "LADDER", {"wbz": (0.5,)})
         patch.setattr(across, "IMPACTS", (1.5, 1e5))
@@ -147,8 +156,9 @@ def of_schemes(scene):
             offer = across._offer(scene, 100.0, modes, 5 * modes[0].frequency, 3e3, stepping)
             yield vars(offer)
         late = FALLS | {"time.start": "consistent"}
-        for values, no_gain in (({"time.gg": 0.98}, None), (late, None), (FALLS, False)):
-            yield advise_across(scene.with_values(values), 0.07, no_gain=no_gain).as_dict()
+        cases = (({"time.gg": 0.98}, None, 0.07), (late, None, 0.03), (FALLS, False, 0.07), (OTHER, None, 0.6))
+        for values, no_gain, target in cases:
+            yield advise_across(scene.with_values(values), target, no_gain=no_gain).as_dict()
 
 
 def of_coarse(granite):
@@ -188,6 +198,8 @@ def of_contact_page(scene, *penetration):
     data = contact_page.answer(scene, rows, *penetration, bound=bound)
     lines = list(contact_page.page(scene, data, {}, bound))
     yield data, lines
+    some = {name: {metric: x for metric, x in run.items() if share(metric) < 0.5} for name, run in data["runs"].items()}
+    yield contact_page.table(scene, some, "contact of a block" if bound is None else "contacts of a column")
 
 
 def of_goal(scene, goal, **changes):
@@ -205,8 +217,8 @@ def numbers_of_advice(step=0.002):
     found = {f"block {name}": of_block(block.with_values(values)) for name, values in BLOCKS.items()}
     for name, (scene, values) in COLUMNS.items():
         found[f"column {name}"] = of_column(first_of(scene).with_values(values))
-    for name in SLOPES:
-        scene = first_of(name)
+    for name, values in SLOPES.items():
+        scene = first_of(name).with_values(values)
         found[f"slope {name}"] = (friction.sliding(scene).as_dict(), [*alarms_of(scene)])
     for kind, rock in zip(KINDS, cycle(ROCKS), strict=False):
         found[f"new {kind}"] = typed(kind, rock, 1.1)
@@ -219,6 +231,8 @@ def numbers_of_advice(step=0.002):
     of_facts = [overview._facts(scene) for scene in (*map(coarse.with_values, FACTS), slope)]
     found["facts"] = [[fact.subject, fact.part, fact.sentence] for facts in of_facts for fact in facts]
     found["coarse"] = of_coarse(PAPER.with_values(GRANITE))
+    levels = itertools.product((0.01, 1.0, 1.3), (0.0, 0.7, 1.0, 1.2))
+    found["levels"] = [spectra.steps_to(*both) for both in levels]
     found["lines"] = [summed(numbers_in([*of_lines()]))]
     found["across"] = of_schemes(block)
     found["goal quake"] = of_goal(block, "quake", ELEMENTS=2, REFINEMENTS=2, COARSEST=12)

@@ -1,7 +1,5 @@
 """The page of `advise`: its table, its lines and what it asks to be typed, of an answer that is made."""
 
-from __future__ import annotations
-
 import math
 import re
 from types import SimpleNamespace
@@ -86,8 +84,9 @@ def test_what_to_type_next_is_the_settings_of_one_or_a_goal_of_several():
 def test_a_page_has_its_facts_its_error_and_where_there_is_more():
     subjects = {"first mode": "damping", "springs": "contact", "glue": "damping"}
     facts = tuple(Fact(subject, "TOLD", part) for subject, part in subjects.items())
-    made = answer(facts=facts, present=PresentError("REFERENCE", 0.25, 0.0123, 0.0456))
+    made = answer(facts=facts, refused={"static": "WHY"}, present=PresentError("REFERENCE", 0.25, 0.0123, 0.0456))
     page = "\n".join(lines(PAPER, Question("mine.toml"), made)).splitlines()
+    assert page[-1] == "static: WHY"
     assert [line.split("  ")[1] for line in page[3:6] if line.endswith("TOLD")] == [*subjects]
     assert re.findall(r"[\d.]+(?= [%s])", page[6]) == ["1.23", "4.56", "0.25"]
     first, second = (line.split("dda-validate ") for line in page[7:9])
@@ -140,6 +139,7 @@ def test_columns_and_blocks_of_which_no_landing_is_known_are_refused():
         (lambda: contact_page.scenes(column), None),
         (lambda: contact_page.scenes(PAPER), "contact.law"),
         (lambda: overview.overview(column, Question()), None),
+        (lambda: advise_across(column, 0.1), None),
         (lambda: advise_across(opens.with_values(rigid), 0.1), None),
         (lambda: advise_across(opens.with_values(tapered), 0.1), None),
     ):
@@ -179,5 +179,12 @@ def test_the_present_run_is_measured_against_what_is_exact(values, reference, fi
     assert (name == reference or reference == "bar") and asked[name].steps == finer * steps
     assert asked[name].step == pytest.approx(0.002 / finer)
     assert asked[name].discount == 1.0  # which has no kinetic damping
-    monkeypatch.setattr(overview, "solve", lambda case, name: SimpleNamespace(history=None))
-    assert overview._present_error(scene) is None
+    for last in (None, finer * steps - 1):  # of a run that ends before its time, or has no history
+
+        def ended(case, name, last=last):
+            history = made(case, name).history
+            short = History(history.time[:last], history.columns)
+            return SimpleNamespace(history=history if name == "dda" else last and short)
+
+        monkeypatch.setattr(overview, "solve", ended)
+        assert overview._present_error(scene) is None

@@ -1,7 +1,5 @@
 """The search beside runs of a scene, with a formula in the place of the runs: a swing whose numbers are candidates."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -30,6 +28,7 @@ from validation.errors import InputError
 STEP = 0.01
 ROWS = 60
 SCENE = load_scene("figures-3-4").with_values({"time.gg": 0.99})
+OWN = {"m": 1.3, "k": 1700.0, "q": 25.0, "d": 0.7}
 
 
 class Swing(SceneSearch):
@@ -57,18 +56,17 @@ class Swing(SceneSearch):
 
 def columns_of(values, steps=ROWS):
     """Return displacement and pressure of a swing."""
-    n = {"m": 1.3, "k": 1700.0, "q": 25.0, "d": 0.7, "parts": 1} | values
+    n = OWN | {"parts": 1} | values
     t = STEP / n["parts"] * np.arange(1, n["parts"] * steps + 1)
     x = n["q"] / n["k"] * (np.exp(-n["d"] * t) * np.cos(np.sqrt(n["k"] / n["m"]) * t) - 1)
     return np.array([x, -n["k"] * x])
 
 
-def factor(name, key, power=1.0, starts=(0.7, 1.4), own=None):
+def factor(name, key, power=1.0, starts=(0.7, 1.4)):
     """Return the change by which a number is larger by a power of a factor."""
-    own = own or {"m": 1.3, "k": 1700.0, "q": 25.0, "d": 0.7}[key]
     words = f"{name} {{:.4g}}".format
     return CandidateChange(
-        name, words, math.exp, lambda u: {key: own * math.exp(power * u)}, tuple(map(math.log, starts))
+        name, words, math.exp, lambda u: {key: OWN[key] * math.exp(power * u)}, tuple(map(math.log, starts))
     )
 
 
@@ -95,6 +93,8 @@ def test_the_number_of_the_candidate_that_gives_a_history_is_found_to_its_digits
     assert verdict.words == {"density-factor": "density-factor 1.17"}
     assert verdict.best == pytest.approx({"m": 1.3 * 1.17}, rel=1e-9)
     assert verdict.left == pytest.approx(0, abs=1e-10)
+    search.patience = 99
+    assert len(search.explanations()) == len(changes)
     slow = Swing(columns_of({"m": 1.3 * 1.17}), changes)
     slow.is_slow = True
     assert named(slow) == [("density-factor", 1.17)]
@@ -148,6 +148,7 @@ def test_a_history_departs_by_enough_rows_for_a_cause():
     moved[:, 20:] *= 1.002
     search = Swing(moved, (LOAD,))
     assert search.departing.tolist() == list(range(20, 60))
+    assert search.judged(Fitted(fixed("gg", "", {}), 0.0, 0.0)).ratio > 1
     assert search.departure(RunVerdict(search, False)) == Departure(21, "offset")
     assert Swing(scene).departure(RunVerdict(search, True)) is None
 
@@ -166,6 +167,10 @@ def test_rows_are_judged_up_to_where_two_correct_codes_agree():
     assert stated == pytest.approx(np.broadcast_to(0.3 + 1e-8 * sizes, scene.shape), rel=1e-12)
     printed = Swing(np.round(scene, 4)).allowed
     assert printed[0] == pytest.approx(np.full(ROWS, 1e-4 + 1e-8 * np.max(np.abs(scene[0]))), rel=1e-3)
+    near = Swing(scene * (1 + 5e-8), apart=1e-11)
+    unit = 1e-8 * sizes + 2 * np.maximum.accumulate(1e5 * apart, axis=1)[:, : near.rows]
+    own = near.judged(Fitted(fixed("gg", "", {}), 0.0, 0.0))
+    assert own.ratio == pytest.approx(np.max(5e-8 * np.abs(scene[:, : near.rows]) / unit), rel=1e-4)
     changed = scene.copy()
     changed[:, beyond:] = 0.0
     assert Swing(changed, apart=1e-16).is_scene()
@@ -238,8 +243,6 @@ def test_two_explanations_of_one_number_are_one():
     assert listed(fitted, fixed("gg", "", {})) == listed(fitted, fitted) == [0.0, 1e-3]
     assert listed(fixed("sign", "", {}, 1.0), plain) == [0.0, 1e-3]
 
-
-# ---- the answer ------------------------------------------------------------------------------------------------------
 
 FOREIGN = Foreign(np.ones(1), np.ones(1), notes=("note of the file",))
 STAGES = {"reading": True, "displacement": False, "contact_pressure": False}

@@ -1,7 +1,5 @@
 """What is tried on a history, as numbers kept in `numbers.toml` beside this file; `KEEP_PAGES=1` writes it anew."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 
@@ -34,6 +32,7 @@ SCENES = {
     "stack": ("field-stack", {"time.alpha": 0.3, "time.delta": 0.6}),
     "gaps": ("field-stack", GAPS),
     "settled": ("columns-shaken", {}),
+    "weight": ("columns-weight", {}),
     "cradle": ("field-cradle", {}),
     "joint": ("field-joint", STRENGTHS | {"column.gravity": 9.0, "column.stiffness": 1e9}),
     "slips": ("columns-slips", {}),

@@ -1,7 +1,5 @@
 """Histories beside scenes with a column whose contacts open or slip: right or silent, never wrong."""
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import replace
@@ -60,9 +58,6 @@ def history(scene, values, digits, every=1):
 def judged(scene, digits=DIGITS, pressure=True, **values):
     foreign = history(scene, {key.replace("__", "."): value for key, value in values.items()}, digits)
     return compare(scene, foreign if pressure else replace(foreign, pressure=None))
-
-
-# ---- what is named ---------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("scene", [DROPPED, pytest.param(SHEARED, marks=pytest.mark.long)])
@@ -146,9 +141,6 @@ def test_a_slip_of_sign_is_named_where_nothing_else_explains_the_rows(monkeypatc
         assert (answer.causes, [one["causes"] for one in answer.alike]) == (causes, alike)
 
 
-# ---- what is not -----------------------------------------------------------------------------------------------------
-
-
 def test_rows_behind_the_horizon_are_not_judged(monkeypatch):
     """With a shift of 1e-4 for 1e-12 the horizon lies inside the run; what comes behind it may be anything."""
     monkeypatch.setattr(columns, "SHIFT", 1e-4)
@@ -161,9 +153,6 @@ def test_rows_behind_the_horizon_are_not_judged(monkeypatch):
     (stage,) = (stage for stage in answer.evidence if stage.name == "horizon")
     assert stage.agrees is None
     assert stage.numbers["rows"] == search.rows
-
-
-# ---- reading ---------------------------------------------------------------------------------------------------------
 
 
 def test_a_file_that_ends_where_more_solves_are_needed_than_ever_before_says_so():

@@ -1,8 +1,7 @@
 """`compare`: the model that fits, against the suite's own DDA and against a DDA program of another make."""
 
-from __future__ import annotations
-
 import json
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,6 +12,7 @@ from matplotlib.image import imread
 from oracles.sliding_block import Plain, history, write_measured_point
 
 from validation import load_scene, solve
+from validation.diagnosis.causes import intervals_of
 from validation.diagnosis.fits.fit import fit, intervals, untold
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.judgement import compare
@@ -29,12 +29,6 @@ def scene(**changes):
     return load_scene("figures-3-4").with_values(base | {k.replace("__", "."): v for k, v in changes.items()})
 
 
-# ---- the stepping of many variants ----------------------------------------------------------------------------------
-
-
-# ---- fits ---------------------------------------------------------------------------------------------------------
-
-
 def test_a_fit_finds_the_scheme_and_its_interval_holds_it():
     column = rectangle_of(scene())
     steps = np.full(80, 0.001)
@@ -42,12 +36,18 @@ def test_a_fit_finds_the_scheme_and_its_interval_holds_it():
     noise = 1e-5 * np.random.default_rng(3).standard_normal(80)
     noisy = histories(column, [true], steps).displacement[:, 0] + noise
     free = ("alpha", "delta", "gg", "softness")
-    (found,) = fit(Target(column, steps, np.arange(80), noisy[None]), [(Variant(0.25, 0.5, 1.0), free)], rounds=20)
+    target = Target(column, steps, np.arange(80), noisy[None])
+    (found,) = fit(target, [(Variant(0.25, 0.5, 1.0), free)], rounds=20)
     for name, interval in intervals(found).items():
         # the interval is a 95 % one; twice it fails once in ten thousand
         assert abs(interval.value - getattr(true, name)) < 2 * interval.half_width, name
         assert interval.half_width < 0.1, name
     assert untold(found) == []
+    ends = intervals_of(target, found, ["gg", "springs-factor"])
+    for cause, name, number in (("gg", "gg", float), ("springs-factor", "softness", lambda x: math.exp(-x))):
+        one = intervals(found)[name]
+        expected = sorted(number(one.value + by * one.half_width) for by in (-1, 1))
+        assert ends[cause] == pytest.approx(expected, rel=1e-6), cause
 
 
 def test_what_one_settled_row_cannot_tell_is_said():
@@ -58,9 +58,6 @@ def test_what_one_settled_row_cannot_tell_is_said():
     target = Target(column, steps, np.arange(100, 140), late[None])
     (found,) = fit(target, [(v, ("alpha", "delta", "gg", "softness"))])
     assert {name for direction in untold(found) for name in direction} >= {"alpha", "delta", "gg"}
-
-
-# ---- answers --------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.long
@@ -112,9 +109,6 @@ def test_a_program_of_another_make(program, opened, tmp_path):
     expected = {"contact-opened"} if opened else set()
     assert {*answer.causes} - {"own-weight"} == {"base-compliance", "geometry-updated"} | expected
     assert (answer.departure and answer.departure.step) == (opened and opened[0])
-
-
-# ---- the command line -----------------------------------------------------------------------------------------------
 
 
 @pytest.mark.long

@@ -1,7 +1,5 @@
 """Histories of known origin: what is said of fifty and of random ones, and that the page counts it."""
 
-from __future__ import annotations
-
 import pytest
 from oracles import compared
 from oracles.sliding_block import history

@@ -1,7 +1,5 @@
 """Histories of other programs: what is read, and what is refused in one line."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np
@@ -27,10 +25,17 @@ def test_the_measured_point_of_ntdda(tmp_path):
     assert found.displacement[0] == -1.839377e-03
     assert found.displacement[-1] == -1.008814e-02
     np.testing.assert_allclose(found.steps, 0.002)
-    fewer = tmp_path / "fewer.m"
-    lines = EXAMPLE.read_text().splitlines()
-    fewer.write_text("\n".join([*lines[:9], *lines[10:]]))
-    np.testing.assert_allclose(read(fewer).displacement, np.delete(found.displacement, 5), rtol=1e-6)
+    up = np.array([0.1, -0.2, -0.3, 0.15, -0.4])
+    aside = np.array([0.03, 0.05, -0.02, 0.01, 0.2])
+    dt = np.array([0.5, 0.4, 0.6, 0.3, 0.7])
+    rates = [np.diff(way, prepend=0.0) / dt for way in (aside, up)]
+    n = np.arange(1, 6)
+    for sizes, rows in ((np.abs(up), n), (np.abs(up), n[[0, 1, 3, 4]]), (np.hypot(up, aside), n)):
+        table = np.array([n, np.cumsum(dt), dt, 7 + aside, 5 + up, sizes, *rates, 0 * n]).T[rows - 1]
+        point = "\n".join(" ".join(map(repr, row)) for row in table.tolist())
+        given = read(written(tmp_path, f"measpoint1 = [\n{point}\n];"))
+        assert given.displacement == pytest.approx(up[rows - 1]) and given.sideways == pytest.approx(aside[rows - 1])
+        assert given.steps is None or len(rows) == 5
 
 
 def test_a_point_is_picked_by_name(tmp_path):
@@ -55,6 +60,9 @@ def test_a_table_with_other_names_units_and_sign(tmp_path, separator):
     assert len(found.notes) == 1  # the row at t = 0 is ignored
     header = text.replace("t" + separator + "uy", separator.join(["time_ms", "displacement_mm"]), 1)
     of_header = read(written(tmp_path, header), {"contact_pressure": "3"})
+    without = written(tmp_path, "\n".join(text.splitlines()[2:]))
+    by_number = read(without, {"time": "1", "displacement": "2", "contact_pressure": "3"}, scale)
+    assert by_number.displacement == pytest.approx(found.displacement)
     assert of_header.time == pytest.approx(found.time) and of_header.displacement == pytest.approx(-found.displacement)
 
 
@@ -85,17 +93,11 @@ def test_options_that_say_nothing(text):
         (parse_scale if "=n" in text or "=0" in text else parse_columns)(text)
 
 
-def history_at(times):
-    return Foreign(np.asarray(times, dtype=float), np.ones(len(times)))
-
-
 def test_a_program_s_own_steps_may_begin_late():
-    late = [one for one in steppings(history_at(0.0007 * np.arange(5, 13)), 0.002) if " 5" in one.note]
-    (rows,) = (one.rows for one in late)
+    foreign = Foreign(0.0007 * np.arange(5, 13), np.ones(8))
+    (rows,) = (one.rows for one in steppings(foreign, 0.002) if " 5" in one.note)
     np.testing.assert_array_equal(rows, np.arange(4, 12))
 
-
-# ---- histories that would take hours to judge -----------------------------------------------------------------------
 
 STEP = 0.002  # s
 

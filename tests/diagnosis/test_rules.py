@@ -1,7 +1,5 @@
 """Rules of the diagnosis over tables of cases on both sides of their limits, as numbers kept in `numbers.toml`."""
 
-from __future__ import annotations
-
 import itertools
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -14,7 +12,17 @@ from oracles.kept_answers import said
 from oracles.stand_ins import assert_kept, share, summed
 
 from validation import load_scene
-from validation.diagnosis import causes, evidence, families, one_change, readings, schemes, search
+from validation.diagnosis import (
+    causes,
+    contact_force,
+    evidence,
+    families,
+    one_change,
+    readings,
+    schemes,
+    search,
+    stepping,
+)
 from validation.diagnosis.evidence import Departure
 from validation.diagnosis.fits import bar
 from validation.diagnosis.fits.fit import NAMED, NUMBERS, _side, bounds, is_factor, named
@@ -33,16 +41,15 @@ BLOCK = Rectangle(2.0, 1.5, 2700.0, 1e9, 0.0, False, 2e9, 1.5e9, 5e6)
 OWN = Variant(0.5, 1.0, 0.99)
 SCENE = load_scene("figures-3-4")
 N = np.arange(1, 9)
+STEPS = np.full(40, 5e-4)
 IDS = ("gg", "scheme", "hht", "contact-dashpot", "springs-factor", "own-weight", "viscous-damping", "dead-band")
 
 MOVES = [
     *(Move("gg", {"gg": 1.0}), Move("scheme", {}, ("alpha", "delta"), (0.3,)), *FEW),
     *(Move("start", {"start": "consistent"}), Move("hht", {"family": "hht", "spectral": 0.2})),
-    *(
-        Move("generalised-alpha", {"family": "chung-hulbert"}, ("spectral",), (0.5, 0.9)),
-        Move("load-factor", {"load": 0.8}),
-    ),
-    *(Move("young-factor", {}, ("young",), (1.3,)), Move("reported-point", {"point": 1.0})),
+    Move("generalised-alpha", {"family": "chung-hulbert"}, ("spectral",), (0.5, 0.9)),
+    *(Move("load-factor", {"load": 0.8}), Move("young-factor", {}, ("young",), (1.3,))),
+    Move("reported-point", {"point": 1.0}),
     Move("dead-band", {"opens": True, "band": 1e-3, "reopening": search.OTHER_PROGRAMS}),
 ]
 
@@ -59,6 +66,9 @@ def departures():
         for change in (0.04 * t**0, 0.1 * swing, -0.3 * t * swing, late - swing, 0 * t, 9e-4 * t, 2.2e-3 * t):
             for noise in (0.0, 4e-4):
                 yield asdict(evidence.measured(expected, expected + change, 3 * np.arange(rows) + 2, noise))
+        manners = (0.04 * t**0, 0.1 * swing, -0.3 * t * swing, late - swing, 0.01 * np.gradient(swing, t))
+        for first, second, part in itertools.product(manners, manners, (0.2, 0.4, 0.6)):
+            yield evidence.measured(expected, expected + part * first - (1 - part) * second, np.arange(rows), 0.0).kind
         for factor in (1.0, 1.3, 2.5):
             grows = factor ** np.arange(float(rows))
             yield evidence.growth(grows, 0 * t + 1), evidence.growth(grows, 50 * t), evidence.growth(0 * t, 0 * t)
@@ -96,14 +106,8 @@ def digits():
     for rounding, spread in ((0.0, 0.2), (0.3, 0.0), (0.3, 0.2)):
         of_rows = bar.Bar(np.full(48, rounding), 2e6, 5.0, spread, np.arange(48) != 7)
         yield of_rows.allowed, of_rows.deviation()
-        for remainder in (
-            0.15 + 0 * draw,
-            0.16 + 0 * draw,
-            0 * draw,
-            0.1 * draw,
-            0.2 * np.sin(0.2 * np.arange(48)),
-            0.3 * draw,
-        ):
+        constant = [x + 0 * draw for x in (0.15, 0.16, 0)]
+        for remainder in (*constant, 0.1 * draw, 0.2 * np.sin(0.2 * np.arange(48)), 0.3 * draw):
             for further in (0.0, 0.055, 0.065, 1.15, 1.25):
                 rows = remainder + further * (np.arange(48) == 20)
                 yield of_rows.holds(rows), of_rows.outlying(rows).tolist(), of_rows.deviation(rows)
@@ -132,6 +136,54 @@ def decisions():
         alone = [Explanation((by_id["density-factor"],), SimpleNamespace(variant=replace(OWN, density=1.7)))]
         for move in search._few(target, scene, alone):
             yield move.id, dict(move.changes), move.free, [*move.starts]
+
+
+def aliases():
+    """Yield by which name a scheme of several names is called, and which these are."""
+    ids = ("theta", "start", "hht gg", "wbz gg", "wbz", "gg", "hht density-factor", "symplectic-euler", "")
+    target = Target(BLOCK, np.full(30, 2e-3), np.arange(30), np.ones((1, 30)))
+    for free in ((), ("gg",), ("gg", "spectral")):
+        several = []
+        for number, names in enumerate(ids):
+            fit = SimpleNamespace(free=free, variant=replace(OWN, gg=0.9 + number / 100))
+            several.append(Explanation(tuple(map(Move, names.split())), fit))
+        for alike in (True, False):
+            with pytest.MonkeyPatch.context() as patch:
+                patch.setattr(search, "same_program", lambda target, *both, alike=alike: alike and both[0] == both[1])
+                for best in several:
+                    one, names = search._canonical(target, best, several)
+                    yield one.ids, [*names], str(search._scheme_alone(best))
+
+
+def forces():
+    """Yield forces of contact that opens, by the signs of both gaps."""
+    start, free = np.array([*itertools.product((-2e-3, 0.0, 1e-3), (-3e-3, -1e-5, 0.0, 2e-3, 9e-3))]).T
+    for method in ("impact", "energy-conserving", "rigid", "implicit", "dashpot"):
+        for dashpot, clipped in ((0.0, True), (7e5, True), (7e5, False)):
+            contact = contact_force.Contact(3e8, dashpot, 0.4, np.array(clipped), 2e-9, 5e-7)
+            gaps = contact_force.Gaps(start, 0.7 * start - 3e-4, free, 1e-3 - 0.2 * free)
+            with np.errstate(invalid="ignore"):  # of two gaps of nothing
+                yield [part.tolist() for part in contact_force.force_of(method, contact, gaps)]
+
+
+ODD = {"softness": 0.3, "tied": False, "weight": 0.4, "gravity": 0.3, "load": 0.7, "ramp": 0.03, "density": 0.8}
+ODD |= {"young": 0.7, "poisson": 0.1, "other_plane": True, "side": 1.2, "tall": 0.8, "inertia": 0.6, "viscous": 9.0}
+ODD |= {"structural": 3e-4, "updated": True, "band": 1e-3, "hold": 2e-4, "lags": "opening", "reset": True, "parts": 2}
+ODD |= {"discounted": "(7)", "secant": True, "strain_load": 0.6, "coupling": 0.7, "kept": "springs", "exact": True}
+ODD |= {"shift": 0.5, "point": -0.4, "late": 1.0, "pressure_factor": 0.9, "displacement_factor": 1.1}
+
+
+def variants():
+    """Yield histories of variants with one odd number each, in contact that holds or opens, on a base, of a scheme."""
+    block = replace(BLOCK, poisson=0.2, gravity=9.81)
+    opens = {"opens": True}
+    mean_gap = {"family": "hht", "spectral": 0.2, "contact": "mean gap"}
+    for about in ({}, opens, opens | {"base": 3.0, "softness": 0.2}, opens | mean_gap):
+        run = stepping.histories(
+            block, [replace(OWN, **about, **{k: v}) for k, v in ODD.items() if k not in about], STEPS
+        )
+        for columns in (run.displacement, run.pressure, run.open):
+            yield np.linalg.norm(columns, axis=0).tolist()
 
 
 class World:
@@ -222,7 +274,8 @@ def acceptance():
             pairs = [
                 search.Explanation(pair, world.fit(OWN, ("gg", "band"))) for pair in itertools.combinations(LIMITS, 2)
             ]
-            yield [(one.ids, one.fit.misfit) for one in search._fewer(target, OWN, pairs)]
+            for one in search._fewer(target, OWN, pairs):
+                yield one.ids, one.fit.misfit, [dict(move.changes) for move in one.moves]
             yield world.fits
 
 
@@ -356,5 +409,5 @@ def same_rows():
 
 def test_rules_decide_as_before():
     tables = (departures, digits, decisions, names, fits, parts, readings_of_rows, same_rows, scenes, searches)
-    tables += (acceptance, motions)
+    tables += (acceptance, motions, aliases, forces, variants)
     assert_kept(KEPT, "rules", {table.__name__: summed(said([*table()], 0.0)) for table in tables})

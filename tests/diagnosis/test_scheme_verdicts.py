@@ -1,7 +1,5 @@
 """Histories by other time schemes than Newmark's, and by contact methods with a force of their own."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -41,16 +39,8 @@ STEPPED = [
 OPENED = [
     *STEPPED,
     ("dashpot", {"c": 0.4, "clipped": False}, {**STEPPED[-1][2], "dashpot": 0.4, "clipped": False}),
-    (
-        "chung-hulbert",
-        {"r": 0.6, "form": "state"},
-        {"family": "chung-hulbert", "spectral": 0.6, "contact": "mean gap"},
-    ),
-    (
-        "moreau",
-        {"e": 0.4, "theta": 0.7},
-        {"family": "theta", "spectral": 0.7, "contact": "impact", "restitution": 0.4},
-    ),
+    ("chung-hulbert", {"r": 0.6, "form": "state"}, {"family": "chung-hulbert", "spectral": 0.6, "contact": "mean gap"}),
+    ("moreau", {"e": 0.4, "theta": 0.7}, {"family": "theta", "spectral": 0.7, "contact": "impact", "restitution": 0.4}),
     ("lagrange", {"alpha": 0.5, "delta": 1.0}, {"contact": "rigid"}),
 ]
 
@@ -71,8 +61,6 @@ def test_candidates_step_as_the_recursions_of_the_papers(opens):
         assert np.max(np.abs(stepped.displacement[:, j] - displacement)) < ROUNDINGS * np.max(np.abs(displacement)), j
         assert np.max(np.abs(stepped.pressure[:, j] - pressure)) < 10 * ROUNDINGS * np.max(np.abs(pressure)), j
 
-
-# ---- scenes of another scheme ---------------------------------------------------------------------------------------
 
 OTHER = {"time.step": 5e-4, "time.steps": 60, "run.solvers": ["dda"], "load.gravity": 9.81}
 DDA_S = load_scene("figures-3-4").with_values(OTHER)
@@ -109,8 +97,6 @@ def test_what_is_stepped_by_newmark_s_scheme_only_is_refused_by_name(changes):
         compare(CHUNG_HULBERT.with_values(changes), Foreign(5e-4 * np.arange(1, 9), -np.ones(8)))
     assert refusal.value.field == "time.scheme"
 
-
-# ---- verdicts -------------------------------------------------------------------------------------------------------
 
 LOCKED, OPENING = {"dt": 2e-3}, {"dt": 5e-4, "opens": True}
 
@@ -153,6 +139,3 @@ def test_two_splits_of_a_composite_scheme_are_one_in_locked_contact():
     for rho_inf in (0.0, 0.6):
         usual = replace(variant, split=0.0, spectral=rho_inf)  # of equal matrices in both stages
         assert companion_split(usual) == pytest.approx(equal_split(rho_inf), rel=1e-12)
-
-
-# ---- faults ------------------------------------------------------------------------------------------

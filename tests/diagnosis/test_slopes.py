@@ -1,7 +1,5 @@
 """`compare` on slopes: the law that a history obeys, from programs that are not the suite's."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path
@@ -144,17 +142,9 @@ def test_a_history_needs_both_directions_and_every_step_in_seconds_of_one_scene(
 
 def test_a_run_that_makes_much_of_rounding_tells_up_to_a_step():
     """Rounding grows at each switch: where it takes over differs between programs, but not before row 20."""
-    values = {
-        "time__alpha": 0.25,
-        "time__delta": 0.5,
-        "time__start": "consistent",
-        "time__step": 1e-2,
-        "time__steps": 80,
-    }
-    shaken = scene(**values)
-    run = solve(
-        shaken.with_values({"contact.stiffness": 1e9 * (1 + 2e-13), "run.columns": list(SlopeSearch.NAMES)}), "dda"
-    )
+    shaken = scene(time__alpha=0.25, time__delta=0.5, time__start="consistent", time__step=1e-2, time__steps=80)
+    others = {"contact.stiffness": 1e9 * (1 + 2e-13), "run.columns": list(SlopeSearch.NAMES)}
+    run = solve(shaken.with_values(others), "dda")
     place = np.array([run.history.columns[name] for name in SlopeSearch.NAMES])
     moved = np.where(np.arange(80) < 20, 0.0, 1e-5) * np.max(np.abs(place), axis=1, keepdims=True)
     for columns, is_scene in ((place, True), (place + moved, False)):

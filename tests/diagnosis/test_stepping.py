@@ -1,7 +1,5 @@
 """The linear stepping of candidate changes: the suite's solver, closed forms and loops written for one scheme each."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -38,7 +36,11 @@ OPENING = {"time.step": 5e-4, "contact.law": "unilateral"}
 # the scene, what else dda is given, and the same as a candidate change
 AS_DDA = [
     ({"time.alpha": 0.25, "time.delta": 0.5, "time.gg": 0.98, "time.start": "consistent"}, {}, {}),
-    ({"block.poisson": 0.3, "time.step": 0.0007, "contact.stiffness": 3e9}, {}, {}),
+    (
+        {"block.poisson": 0.3, "time.step": 0.0007, "contact.stiffness": 3e9},
+        {"contact.stiffness": 2e9},
+        {"softness": np.log(1.5)},
+    ),
     ({"block.poisson": 0.2, "block.hypothesis": "plane strain", "load.gravity": 9.81, "time.gg": 0.9} | OBLONG, {}, {}),
     ({"time.alpha": 0.0, "time.delta": 0.5, "time.step": 0.0005, "block.density": 1800.0}, {}, {}),
     ({"time.scheme": "chung-hulbert", "time.rho_inf": 0.7, "time.gg": 0.98}, {}, {}),

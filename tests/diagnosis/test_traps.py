@@ -1,7 +1,6 @@
-"""One slip at a time in a plain DDA code of someone else's: each is named, and what is no slip is not."""
+"""Slips, wrong rows and noise in a plain DDA code of someone else's: each is named, and what is no slip is not."""
 
-from __future__ import annotations
-
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -10,7 +9,7 @@ from oracles.few_moves import FEW, among, only
 from oracles.program_scenes import scene_of
 from oracles.sliding_block import Plain, run
 
-from validation.diagnosis import judgement
+from validation.diagnosis import judgement, search
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
 
@@ -18,9 +17,12 @@ PLAIN = Plain(steps=50)  # figures-3-4 at 2 ms
 
 
 def judged(base=PLAIN, pressure=True, **slip):
-    displacement, contact = run(replace(base, **slip))
-    time = base.dt * np.arange(1, base.steps + 1)
-    return compare(scene_of(base), Foreign(time, displacement, contact if pressure else None))
+    return answer_to(base, run(replace(base, **slip))[: 1 + pressure])
+
+
+def answer_to(base, columns):
+    scene = scene_of(base).with_values({"contact.law": "unilateral"} if base.opens else {})
+    return compare(scene, Foreign(base.dt * np.arange(1, base.steps + 1), *columns))
 
 
 def test_a_tolerance_decides_what_counts_as_the_same(monkeypatch):
@@ -61,6 +63,14 @@ def test_a_run_that_diverges_is_told_so_and_nothing_else():
     assert answer.values == {"diverged": 14.2068}
 
 
+@pytest.mark.parametrize("discount", [1.0, pytest.param(0.98, marks=pytest.mark.long)])
+def test_stiffness_damping_and_a_scheme_are_told_as_two(discount, monkeypatch):
+    only(monkeypatch, "stiffness-damping", "viscous-damping", "scheme", "gg", "start")
+    answer = judged(replace(PLAIN, steps=60, gg=discount), structural=1e-4)
+    assert answer.causes == ["unexplained"]
+    assert {one["causes"][0] for one in answer.alike} == {"stiffness-damping", "scheme"}
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("slip", [{"shaken": 0.01}, {"hardening": 20.0}])
 def test_what_is_in_no_catalogue_is_not_named(slip):
@@ -85,3 +95,67 @@ def test_the_evidence_says_which_column_is_right_by_itself(monkeypatch):
     stages = {stage.name: stage for stage in late.evidence}
     assert stages["displacement"].agrees and not stages["contact_pressure"].agrees
     assert all(stages[name].agrees for name in ("reading", "bounded", "statics", "frequency", "damping"))
+
+
+STIFF = Plain(steps=60, p=5e9, dt=0.001)
+
+
+def printed(values, digits):
+    return np.array([float(f"{v:.{digits - 1}e}") for v in values])
+
+
+@pytest.mark.parametrize(
+    ("slip", "causes"),
+    [({}, ["single-rows"]), pytest.param({"rho": 2970.0}, ["single-rows", "density-factor"], marks=pytest.mark.long)],
+)
+def test_a_row_printed_twice_is_told_by_its_step(slip, causes, monkeypatch):
+    among(monkeypatch, FEW)
+    displacement, pressure = (printed(values, 8) for values in run(replace(STIFF, **slip)))
+    right = displacement[40]
+    displacement[40] = displacement[39]
+    pressure[40] = pressure[39]
+    answer = answer_to(STIFF, (displacement, pressure))
+    assert answer.causes == causes
+    assert answer.values["single-rows"] == 41
+    (stage,) = (stage for stage in answer.evidence if stage.name == "rows")
+    assert stage.agrees is False
+    off = 100 * abs(right - displacement[40]) / np.max(np.abs(displacement))
+    assert float(re.search(r"([\d.]+) % off", stage.words)[1]) == pytest.approx(off, rel=0.06)  # of two digits
+
+
+@pytest.mark.parametrize(
+    ("base", "size", "seed"), [(Plain(steps=60, alpha=0.25, delta=0.5, gg=0.95), 1e-5, 0), (Plain(steps=60), 1e-3, 1)]
+)
+def test_white_noise_on_a_right_history_is_noise(base, size, seed):
+    noise = np.random.default_rng(seed).standard_normal((2, base.steps))
+    columns = [x + size * np.max(np.abs(x)) * e for x, e in zip(run(base), noise, strict=True)]
+    assert answer_to(base, columns).causes == []
+
+
+def test_five_digits_in_millimetres_are_a_unit_not_a_load():
+    displacement, _ = run(STIFF)
+    assert answer_to(STIFF, (printed(1e3 * displacement, 5),)).causes == ["unit"]
+
+
+OPENS = Plain(steps=36, dt=0.001, p=3e9, alpha=0.25, delta=0.5, consistent=True, opens=True)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("slip", "cause"),
+    [({"lags": "opening"}, "late-opening"), ({"lags": "switching"}, "late-contact"), ({"band": 1e-3}, "dead-band")],
+    ids=str,
+)
+def test_what_switches_a_contact_is_named(slip, cause):
+    assert judged(OPENS, **slip).causes == [cause]
+
+
+@pytest.mark.parametrize("steps", [20, pytest.param(36, marks=pytest.mark.long)])
+def test_a_tension_that_a_contact_bears_is_told_with_what_gives_the_same_rows(steps, monkeypatch):
+    if steps == 20:
+        monkeypatch.setattr(search, "moves", lambda *given: [])
+    answer = judged(replace(OPENS, steps=steps), tension=1e6)
+    assert answer.causes == ["opening-tension"]
+    low, high = answer.intervals["opening-tension"]
+    assert low <= 1e6 * 2 / OPENS.side <= high  # two corners, over the length of the base
+    assert f"({low:.3g} to {high:.3g} Pa" in answer.sentence

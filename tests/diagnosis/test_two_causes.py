@@ -1,7 +1,5 @@
 """Two causes at once, and what a fit leaves open, among few candidates and over few steps."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -147,8 +145,6 @@ def test_the_likeliest_reading_that_is_explained_is_taken(monkeypatch):
         verdicts[1].same = True
         assert judgement._best(cases) == (cases[1], verdicts[1])
 
-
-# ---- limits of contact -----------------------------------------------------------------------------------------------
 
 STIFF = replace(BLOCK, young=3e9, density=2900.0, normal=6e10, shear=6e10, pressure=6e6)
 

@@ -1,7 +1,5 @@
 """Folders of answers: read as a whole, every defect of all files listed at once, kept in their layout or refused."""
 
-from __future__ import annotations
-
 import csv
 import json
 
@@ -36,9 +34,6 @@ def names_of(sets):
     return [(one.data.settings_name, tuple(answer.name for answer in one.answers)) for one in sets]
 
 
-# ---- what is read ---------------------------------------------------------------------------------------------------
-
-
 def test_settings_of_a_program_are_read_with_their_problems_in_the_order_of_the_pack(tmp_path):
     answered(tmp_path / "coarse", settings_name="coarse", names=("column", "locked"))
     fine = answered(tmp_path / "fine", settings_name="fine", step_s={"rocking": 1e-3}, names=("rocking",))
@@ -67,16 +62,18 @@ def test_a_column_that_is_not_reported_is_named_by_problem(tmp_path):
 
 def test_an_answer_to_a_problem_that_changed_is_stale_and_the_others_stand(tmp_path, monkeypatch):
     now = packs.packs()[PACK]
-    monkeypatch.setattr(packs, "packs", lambda: {"1.9": now | {"locked": "0" * 16}, PACK: now})
+    without = {name: digest for name, digest in now.items() if name != "column"}
+    monkeypatch.setattr(packs, "packs", lambda: {"1.8": without, "1.9": now | {"locked": "0" * 16}, PACK: now})
     monkeypatch.setattr("validation.problems.answers.packs", packs.packs)
     answered(tmp_path, pack="1.9")
     (tmp_path / "locked.csv").write_text("what it asked then is not known")
     ((stale, *others),) = [one.answers for one in read_sets(tmp_path)]
     assert stale.name == "locked" and stale.history is None and "1.9" in stale.reason
     assert [answer.status for answer in others] == [None, None]
-
-
-# ---- what is refused ------------------------------------------------------------------------------------------------
+    early = answered(tmp_path / "early", pack="1.8")
+    assert [(field, value) for _, field, value in defects_of(early)] == [("pack", "'1.8'")]  # without a column yet
+    (early / "column.csv").write_text(blank_table(problem("column")))
+    assert names_of(read_sets(early)) == [("default", ("locked", "rocking"))]
 
 
 def spoilt(place, name, change):
@@ -103,6 +100,11 @@ MISTAKES = {
         FILE,
         lambda text: text.replace("0.002", '{"spall": 0.002}'),
         (f"{FILE}:9:13", "step_s", "no such file"),
+    ),
+    "a problem that nobody asks": (
+        FILE,
+        lambda text: text.replace("0.002", '{"spal": 0.002}'),
+        (f"{FILE}:9:13", "step_s", None),
     ),
 }
 
@@ -145,9 +147,6 @@ def test_names_of_folders_lead_nowhere_else(text, name):
     assert folder_name(text) == name
 
 
-# ---- what is kept ---------------------------------------------------------------------------------------------------
-
-
 def test_an_answer_is_kept_once_and_not_overwritten(tmp_path):
     layout = tmp_path / "submissions"
     mine = answered(tmp_path / "mine", names=QUICK[:1])
@@ -164,8 +163,6 @@ def test_an_answer_is_kept_once_and_not_overwritten(tmp_path):
     assert (place / "locked.csv").read_bytes() == kept
     assert [path.name for path in place.parent.iterdir()] == ["default"]  # neither is half of them written
 
-
-# ---- tables ---------------------------------------------------------------------------------------------------------
 
 Rows = list[list[str]]
 
@@ -275,6 +272,7 @@ def test_what_other_programs_write_is_read(written, tmp_path):
         ({"settings_name": 61 * "x"}, "settings_name", 61 * "x"),
         ({"step_s": "0.002"}, "step_s", "'0.002'"),
         ({"not_reported": {"locked": ["pressure"]}}, "not_reported.locked", "'pressure'"),
+        ({"not_reported": {"locked": "pressure"}}, "not_reported.locked", "'pressure'"),
         (
             {"not_reported": {"locked": ["displacement_m", "contact_pressure_Pa"]}},
             "not_reported.locked",
@@ -321,17 +319,14 @@ def test_tables_alone_answer_problems_and_scenes_of_ones_own(tmp_path):
     assert caught.value.field == "asked"
 
 
-# ---- boxes on a ground -----------------------------------------------------------------------------------------------
-
-
 POSE = ("x", "y", "angle")
 
 
-def boxes_answered(place, name):
+def boxes_answered(place, name, unit=1.0):
     """Answer a problem of boxes with boxes that stay where they are."""
     asked = problem(name)
     poses = {f"{box.name}.{part}": getattr(box, part) for box in boxes_of(asked.scene).boxes for part in POSE}
-    columns = {c: np.full(len(asked.instants), poses[c]) for c in asked.columns}
+    columns = {c: np.full(len(asked.instants), unit * poses[c]) for c in asked.columns}
     (place / f"{name}.csv").write_text(table_of(asked, History(asked.instants, columns)))
 
 
@@ -347,3 +342,5 @@ def test_positions_of_boxes_are_measured(tmp_path):
     # Forces are not asked: what is measured on them alone is not among the numbers.
     assert len(judged.judged["pile"].judgement.criteria) == 2
     assert "slid" in judged.judged["standing-friction-19-deg"].judgement.deciding.name
+    boxes_answered(place, "standing", 1e3)
+    assert [field for _, field, _ in defects_of(place)] == ["box.y_m"]

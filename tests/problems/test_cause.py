@@ -12,23 +12,6 @@ from validation.problems.problem import problem
 from validation.runs.history import History
 from validation.solvers.registry import get_solver
 
-AVERAGE = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}
-
-
-def fine(name, values, times=32, scheme=AVERAGE):
-    """Return another scene's motion at the steps of a problem."""
-    scene = problem(name).scene.with_values(scheme | values)
-    finer = {"time.step": scene.time.step / times, "time.steps": scene.time.steps * times}
-    found = get_solver("dda").solve(scene.with_values(finer)).history
-    return History(found.time[times - 1 :: times], {k: x[times - 1 :: times] for k, x in found.columns.items()})
-
-
-def named(name, found):
-    asked = problem(name)
-    held = standard(asked)
-    assert judge(asked, found, held).status is Status.FAIL
-    return cause(asked, found, held)
-
 
 @pytest.fixture(autouse=True)
 def without_compare(monkeypatch):
@@ -38,9 +21,17 @@ def without_compare(monkeypatch):
 
 def test_ddas_habit_and_another_integrator():
     asked = problem("locked")
-    habit = named("locked", get_solver("dda").solve(asked.scene).history)
+    time = asked.scene.time
+    held = standard(asked)
+    usual = get_solver("dda").solve(asked.scene).history
+    assert judge(asked, usual, held).status is Status.FAIL
+    habit = cause(asked, usual, held)
     assert (habit.ids, habit.values["alpha"]) == (("scheme",), 0.5)
-    passing = fine("locked", {}, round(asked.scene.time.step / habit.passing_step), scheme={})
+    times = round(time.step / habit.passing_step)
+    finer = {"time.step": time.step / times, "time.steps": time.steps * times}
+    found = get_solver("dda").solve(asked.scene.with_values(finer)).history
+    rows = slice(times - 1, None, times)
+    passing = History(found.time[rows], {name: x[rows] for name, x in found.columns.items()})
     assert judge(asked, passing).status is Status.PASS
 
 

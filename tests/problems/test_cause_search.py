@@ -1,7 +1,6 @@
 """The search for the cause of a failure, with a formula in the place of the runs: a swing on two springs in series."""
 
-from __future__ import annotations
-
+import itertools
 import math
 import re
 from dataclasses import replace
@@ -138,18 +137,18 @@ SCHEMES = [
 ]
 
 
-@pytest.mark.parametrize(("values", "numbers", "words"), SCHEMES)
-def test_a_scheme_is_named_with_the_step_at_which_it_passes(values, numbers, words, monkeypatch):
+def test_a_scheme_is_named_with_the_step_at_which_it_passes(monkeypatch):
     monkeypatch.setattr(Runs, "exact", None)  # of digits that agree nothing else is asked
-    one = found(motion(values))
-    assert (one.ids, one.values) == (("scheme",), numbers)
-    assert words in one.sentence
-    runs = Runs(SCENE, STANDARD)
-    shares = []
-    for step in (one.passing_step, 2 * one.passing_step):
-        every = round(SCENE.time.step / step)
-        shares.append(runs.apart(runs.sampled(Base("", values, every)), EXACT.columns))
-    assert shares[0] <= 1 < shares[1] and SCENE.time.step / one.passing_step >= 2
+    for values, numbers, words in SCHEMES:
+        one = found(motion(values))
+        assert (one.ids, one.values) == (("scheme",), numbers)
+        assert words in one.sentence
+        runs = Runs(SCENE, STANDARD)
+        shares = []
+        for step in (one.passing_step, 2 * one.passing_step):
+            every = round(SCENE.time.step / step)
+            shares.append(runs.apart(runs.sampled(Base("", values, every)), EXACT.columns))
+        assert shares[0] <= 1 < shares[1] and SCENE.time.step / one.passing_step >= 2
 
 
 def test_another_number_beside_the_usual_scheme_is_told_with_it():
@@ -186,20 +185,17 @@ def test_what_is_tried_is_as_before():
         for cheap in (True, False):
             tried = [*module.of_data(runs, base, cheap), *module.of_damping(runs, base)]
             for change in (*tried, *module.of_output(runs, base, COLUMNS[: 1 + cheap])):
-                found.append(
-                    [
-                        change.id,
-                        change.starts,
-                        change.nudge,
-                        change.value(0.3),
-                        re.findall(r"[\d.]+", change.words(1.3)),
-                    ]
-                )
+                numbers = re.findall(r"[\d.]+", change.words(1.3))
+                found.append([change.id, change.starts, change.nudge, change.value(0.3), numbers])
                 found.append([change.changed(u) for u in (0.07, -0.4, 2.9, 7.0, -6.8, change.starts[-1])])
     for scene in (SCENE, OPENING, load_scene("field-rocking"), load_scene("field-joint")):
         for base in Runs(scene, STANDARD).schemes():
             found.append([base.values, base.every, base.usual, base.alpha(scene.time), base.delta(scene.time)])
             found.append([models.INTERCHANGED in base.words, base.exact])
+    exact = (None, runs.exact(), Base("", {}), Base("", {}, 2, solver="bars-events"))
+    for scene, one, cheap in itertools.product((SCENE, load_scene("field-rocking")), exact, (True, False)):
+        bases = module.Search(Runs(scene, STANDARD), {})._bases(one, cheap)
+        found.append([[base.values, base.every, base.solver] for base in bases])
     named = [Cause(f"C{i}", ids, dict.fromkeys(ids, 0.9), (), 1e-3 * i) for i, ids in enumerate((("gg",), ("x", "gg")))]
     found += [[module._rank(one), module._short(one)] for one in named]
     weighty = {"load.gravity": 9.81}, {"block.velocity": -1.0, "contact.law": "unilateral"}, {"time.gg": 0.9}
@@ -244,9 +240,6 @@ def test_numbers_are_looked_for_where_runs_are_cheap(monkeypatch):
     assert asked == [cheap, *2 * [3 * [False]], cheap, *2 * [[False, False, True]]]
 
 
-# ---- runs ------------------------------------------------------------------------------------------------------------
-
-
 def test_a_run_stands_for_the_exact_motion_where_it_is_near_enough(monkeypatch):
     runs = Runs(SCENE, STANDARD)
     base = runs.exact()
@@ -288,9 +281,6 @@ def test_a_solver_that_does_not_run_to_its_end_has_no_history(monkeypatch):
     assert given(solve=fails) is None
     assert given(solve=lambda scene: SimpleNamespace(outcome=Outcome.OVERFLOW, history=EXACT)) is None
     assert models._run_by(SCENE, {"time.steps": -1}, "dda") is None
-
-
-# ---- words and `compare` ---------------------------------------------------------------------------------------------
 
 
 def test_compare_is_asked_where_it_can_look(monkeypatch):

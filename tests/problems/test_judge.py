@@ -49,12 +49,12 @@ WRONG = {
 
 
 @pytest.mark.parametrize("name", ALL)
-@pytest.mark.parametrize("wrong", WRONG)
-def test_a_wrong_history_fails(name, wrong):
+def test_a_wrong_history_fails(name):
     asked = short(name)
-    word = judge(asked, history(asked, WRONG[wrong])).status
-    within = (name, wrong) == ("rocking", "half a step late")  # it falls so slowly that 2.5 ms are less than 1 % of a
-    assert word is (Status.PASS if within else Status.FAIL)
+    for wrong, change in WRONG.items():
+        word = judge(asked, history(asked, change)).status
+        within = (name, wrong) == ("rocking", "half a step late")  # it falls so slowly that 2.5 ms are below 1 % of a
+        assert word is (Status.PASS if within else Status.FAIL), wrong
 
 
 @pytest.mark.parametrize("name", ["locked", "rocking"])
@@ -90,17 +90,15 @@ def test_the_exact_motion_passes_and_so_does_what_one_per_cent_of_a_datum_change
 
 
 @pytest.mark.parametrize("name", ALL)
-@pytest.mark.parametrize(("times", "word"), [(1 - 1e-6, Status.PASS), (1 + 1e-6, Status.FAIL)])
-def test_both_sides_of_the_band(name, times, word):
+def test_both_sides_of_the_band(name):
     asked = short(name)
     held = standard(asked)
     for column, edge in held.bands.items():
-        columns = dict(held.exact.columns)
-        columns[column] = columns[column] * (1 + times * edge.high)
-        found = judge(asked, History(held.exact.time, columns))
-        assert found.status is word
-        assert found.deciding.name == column
-        assert edge.datum in found.deciding.reason
+        for times, word in ((1 - 1e-6, Status.PASS), (1 + 1e-6, Status.FAIL)):
+            x = held.exact.columns[column] * (1 + times * edge.high)
+            found = judge(asked, History(held.exact.time, dict(held.exact.columns) | {column: x}))
+            assert (found.status, found.deciding.name) == (word, column)
+            assert edge.datum in found.deciding.reason
 
 
 def test_a_column_that_is_absent_is_told():
@@ -119,12 +117,6 @@ def test_a_column_that_is_absent_is_told():
     reasons = [one.reason for one in judge(asked, exact, Standard(still, {}, {})).criteria]
     reasons += [one.reason for one in judge(asked, exact, Standard(History(exact.time, {}), {}, {})).criteria]
     assert len({*reasons}) == 3 and reasons[2] == reasons[3]
-
-
-def test_numbers_that_people_understand():
-    asked = short("opening")
-    told = {number.name: number for number in judge(asked, standard(asked).exact).quantities}
-    assert told["openings"].value == told["openings"].exact == 2
 
 
 def test_a_band_ends_where_the_data_do_not_determine_the_motion_any_more():
@@ -201,18 +193,14 @@ def test_the_modulus_of_rigid_blocks_is_no_datum():
     assert ["Young's modulus" in changes(problem(name).scene) for name in ("stack", "cradle")] == [False, True]
 
 
-# ---- boxes on a ground -----------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("name", boxes.box_problems())
-def test_boxes_are_judged_by_their_numbers(name):
-    one = problem(name)
-    reference = standard(one)
-    assert reference.bands == {} and set(reference.exact.columns) == set(one.scene.run.columns)
-    judgement = judge(one, reference.exact)
-    assert judgement.verdict == "PASS"
-    assert judgement.criteria and len(judgement.criteria) == len(judgement.quantities)
-    assert all(one.allowed is not None and one.allowed <= 0.026 for one in judgement.criteria)
+def test_boxes_are_judged_by_their_numbers():
+    for one in map(problem, boxes.box_problems()):
+        reference = standard(one)
+        assert reference.bands == {} and set(reference.exact.columns) == set(one.scene.run.columns)
+        judgement = judge(one, reference.exact)
+        assert judgement.verdict == "PASS", one.name
+        assert judgement.criteria and len(judgement.criteria) == len(judgement.quantities)
+        assert all(number.allowed is not None and number.allowed <= 0.026 for number in judgement.criteria)
 
 
 def test_a_number_that_the_positions_hold_and_do_not_give_fails_by_infinitely_much():

@@ -1,7 +1,5 @@
 """The problem pack: complete, and all that a stranger needs to answer a problem with the exact motion."""
 
-from __future__ import annotations
-
 import json
 import shutil
 from pathlib import Path
@@ -32,7 +30,9 @@ def written(tmp_path_factory):
     directory = tmp_path_factory.mktemp("pack")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(pack, "names", lambda: (*QUICK, *BOXES))
-        assert pack.write_pack(directory) == len(QUICK) + len(BOXES)
+        told = []
+        assert pack.write_pack(directory, lambda *x: told.append(x)) == 6
+        assert told == [(number, 6, name) for number, name in enumerate((*QUICK, *BOXES))]
     return directory
 
 

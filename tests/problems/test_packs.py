@@ -1,7 +1,5 @@
 """Versions of the pack: digests of problems, and which answers to an earlier pack are answers to this one."""
 
-from __future__ import annotations
-
 import itertools
 import json
 from dataclasses import replace
@@ -31,8 +29,7 @@ def test_a_minor_version_adds_problems_only():
 
 
 @pytest.mark.parametrize(
-    "values",
-    [{"block.density": 2701.0}, {"contact.stiffness": 1.01e9}, {"time.step": 0.001}, {"time.steps": 49}],
+    "values", [{"block.density": 2701.0}, {"contact.stiffness": 1.01e9}, {"time.step": 0.001}, {"time.steps": 49}]
 )
 def test_another_question_has_another_digest(values):
     one = problem("locked")

@@ -1,7 +1,5 @@
 """Problems as plain data: nothing of a scene is lost, names carry the units, what is infinite has a name."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

@@ -1,7 +1,5 @@
 """What this suite's own solvers answer: at fine steps DDA passes, by its habit it damps; the page has the bands."""
 
-from __future__ import annotations
-
 import pytest
 
 from validation.diagnosis.hooks import DiagnosisHooks
@@ -13,15 +11,10 @@ from validation.scenes import features
 from validation.solvers.registry import get_solver
 
 FINER, FINER_TURNING = 32, 4  # steps in one of the scene's; of a block that turns, which takes long
-OF_BLOCKS = ("locked", "opening", "sliding", "rocking", "column")
-QUICK = ("locked", "column")  # to have an exact motion, and to run
+SLOW = [pytest.param(name, marks=pytest.mark.long) for name in ("opening", "sliding", "rocking", "column")]
 
 
-def each(names, quick=QUICK):
-    return [name if name in quick else pytest.param(name, marks=pytest.mark.long) for name in names]
-
-
-@pytest.mark.parametrize("name", each(OF_BLOCKS, ("locked",)))
+@pytest.mark.parametrize("name", ["locked", *SLOW])
 def test_at_fine_steps_dda_passes(name):
     """Its error is that of its scheme, far below what one per cent of the data changes."""
     one = problem(name)

@@ -1,7 +1,5 @@
 """Which exact motion a scene has: the right one, or none; a wrong one would judge programs wrongly."""
 
-from __future__ import annotations
-
 import math
 from types import SimpleNamespace
 

@@ -328,5 +328,4 @@ def _sentence(scene: Scene, answer: Advice) -> str:
 
 
 def _answer(solution: Solution) -> str:
-    key = next(iter(solution.settings))
-    return say("gg without rate" if key == "time.gg" and solution.gg_rate is None else key, solution)
+    return say(next(iter(solution.settings)), solution)

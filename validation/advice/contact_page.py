@@ -169,7 +169,7 @@ def table(scene: Scene, runs: Mapping[str, Metrics], kind: str) -> list[Line]:
     for line in LINES[kind]:
         cells = [_cell(scene, line, run) for run in runs.values()]
         of_friction = line.get("friction", False)
-        is_empty = line.get("optional", False) and {*cells} == {NONE}
+        is_empty = kind == "contacts of a column" and {*cells} == {NONE}
         if not is_empty and (not of_friction or features.FRICTION in features.of(scene)):
             lines.append((line["words"], *cells))
     return lines

@@ -185,12 +185,10 @@ def band_interval(target: Target, variant: Variant, cause: str = "dead-band") ->
     def end(farthest: float) -> float:
         trials = np.geomspace(fitted, fitted * farthest, TRIALS)[1:].tolist()
         inner = fitted
-        outer = trials[-1]
-        for band, alike in zip(trials, same(trials), strict=True):
+        for outer, alike in zip(trials, same(trials), strict=True):
             if not alike:
-                outer = band
                 break
-            inner = band
+            inner = outer
         at_end = changed(variant, {field: edge(lambda band: same([band])[0], inner, outer, BAND_ERROR)})
         return significant(values_of(target.column, [cause], at_end)[cause], 4)
 

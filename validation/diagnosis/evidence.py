@@ -93,9 +93,8 @@ def measured(expected_values: Array, recorded: Array, rows: np.ndarray, noise: f
     factor on r - s (amplitude), a stretch of time (phase), a further decay (damping).
     """
     with np.errstate(all="ignore"):
-        expected_values = np.nan_to_num(expected_values, posinf=1e300, neginf=-1e300)
         size = largest(recorded) or 1.0
-        r = np.clip(expected_values, -1e3 * size, 1e3 * size)
+        r = np.clip(np.nan_to_num(expected_values), -1e3 * size, 1e3 * size)
     d = recorded - r
     tolerance = max(DEPARTED * size, NOISE * noise)
     beyond = np.flatnonzero(np.abs(d) > tolerance)
@@ -211,8 +210,8 @@ def column_stage(name: str, agrees: bool, misfit: float, beside: str, numbers: d
 
 def _motion(target: Target, expected: Array) -> list[Stage]:
     """Return where file and scene come to rest, and how their strongest motion swings."""
-    steps = np.diff(np.concatenate([[-1], target.rows]))
-    if np.ptp(target.steps) > 1e-9 * target.steps[0] or len(set(steps[1:].tolist())) > 1:
+    steps = np.diff(target.rows)
+    if np.ptp(target.steps) > 1e-9 * target.steps[0] or np.ptp(steps) > 0:
         return [Stage(name, None, "not told by unequal rows", {}) for name in ("statics", "frequency", "damping")]
     step = float(target.steps[0]) * float(steps[-1])
     theirs = swing(target.displacement, step)

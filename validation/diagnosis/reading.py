@@ -116,9 +116,7 @@ def _table(text: str, path: Path, columns: Mapping[str, str]) -> tuple[dict[str,
     columns_of_file = {}
     factors = {}
     for ours in OURS:
-        theirs, factor = columns.get(ours, ours), 1.0
-        if ours not in columns:
-            theirs, factor = _recognised(ours, names)
+        theirs, factor = (columns[ours], 1.0) if ours in columns else _recognised(ours, names)
         place = _place(ours, theirs, names, path)
         if place is not None:
             columns_of_file[ours] = table[:, place]

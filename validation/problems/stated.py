@@ -47,11 +47,9 @@ class Document:
             content = json.loads(text)
             self._walk(0, ())
         except json.JSONDecodeError as error:
-            before = text[: error.pos].rstrip(BLANKS)
-            last_comma = before.endswith(",") and text[error.pos : error.pos + 1] in ("}", "]")
-            comment = text[error.pos : error.pos + 1] in ("/", "#")
-            advice = "a comma after the last entry?" if last_comma else None
-            if comment:
+            before, after = text[: error.pos].rstrip(BLANKS), text[error.pos : error.pos + 1]
+            advice = "a comma after the last entry?" if before.endswith(",") and after in ("}", "]") else None
+            if after in ("/", "#"):
                 advice = "JSON has no comments"
             place = Place(path, error.lineno, error.colno)
             raise InputError(f"must be JSON: {error.msg}", source=place, advice=advice) from None

@@ -80,7 +80,7 @@ def _beyond(y: Array) -> float:
     window = min(WINDOW, len(y) // 2)
     rows = np.lib.stride_tricks.sliding_window_view(y, window)
     s = np.linalg.svd(rows, compute_uv=False)[window // 2 :]
-    return float(np.sqrt(np.mean(s**2) / len(rows)))
+    return float(np.sqrt(np.mean(s**2)))
 
 
 @cache

@@ -77,7 +77,7 @@ class Target:
             both = [stepped.displacement[self.rows], stepped.pressure[self.rows]]
             with np.errstate(all="ignore"):  # variants that grow beyond what a double holds are far from any history
                 columns.append(self.join(np.array(both[: len(self.recorded)])))
-        return np.nan_to_num(np.hstack(columns), nan=1e6, posinf=1e6, neginf=-1e6).clip(-1e6, 1e6)
+        return np.nan_to_num(np.hstack(columns), nan=1e6).clip(-1e6, 1e6)
 
     def parts(self, joined: Array) -> Array:
         """Return joined rows as columns in their units, (columns, rows)."""
