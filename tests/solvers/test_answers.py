@@ -81,7 +81,7 @@ def unless_refused(ask):
 def told(scene):
     """Return what the kind of a scene tells of it before anything is run, in numbers."""
     showing = ShowingHooks.of(scene)
-    drawn = [left + right for left, right in showing.drawing(scene, 80)[1]]
+    drawn = [left + right for left, right in showing.drawing(scene, 44)[1]]
     advice = AdviceHooks.of(scene)
     asked = {} if get_solver("fenicsx").refusal(scene) else request(scene)  # of another program
     facts = [*advice.motions(scene), advice.contact_limits(scene)]

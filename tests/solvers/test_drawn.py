@@ -6,11 +6,13 @@
 import zlib
 from pathlib import Path
 
+import meshio
 import numpy as np
 from matplotlib.figure import Figure
 from oracles.stand_ins import assert_kept, history, numbers_in, summed
 from oracles.stated_scenes import STATED, made
 
+from validation.models.plane import fields
 from validation.models.plane.generators import (
     ArchSection,
     ColumnsSection,
@@ -36,7 +38,7 @@ DRAWN = (
     "bars that open",
 )
 STATED_WHOLE = ("held by cohesion", "layers on springs", "struck layers", "row of cells", "subblocks-triangles")
-OF_PLANE = ("standing-truss-load", "pushing-held", "patch-strip", "boxes-pile")
+OF_PLANE = ("standing-truss-load", "pushing-held", "patch-strip", "boxes-pile", "rigid-shaken")
 MOVED = ("pushing-held", "row of cells")
 VALUES = [  # what remarks on a block are made of: on both sides of what decides them
     {"least root": -0.9, "e least": 0.2, "e most": 0.9, "e own": 0.5, "tan b": 0.5, "tan phi": 0.3, "w/h": 0.2},
@@ -61,6 +63,23 @@ def drawn(axes):
     yield from np.ravel([axes.get_xlim(), axes.get_ylim()]).tolist()
 
 
+def written(scene, directory):
+    """Yield the numbers in files of the fields of a motion: the last step, and each so many."""
+    for file in (directory / "fields.vtu", directory / "fields.xdmf"):
+        fields.write_fields(file, scene.plane.assembly, history(scene))
+    mesh = meshio.read(directory / "fields.vtu")
+    yield from numbers_in([mesh.points.tolist(), mesh.cells_dict["triangle"].tolist()])
+    states = [(0.0, mesh.point_data, mesh.cell_data)]
+    with meshio.xdmf.TimeSeriesReader(directory / "fields.xdmf") as reader:
+        reader.read_points_cells()
+        states += [reader.read_data(number) for number in range(reader.num_steps)]
+    for time, *of_state in states:
+        yield time
+        for data in of_state:
+            for key in sorted(data):
+                yield from np.ravel(data[key]).tolist()
+
+
 def numbers(name, directory):
     scene = made(name, directory) if name in STATED else load_scene(name).expand()[0]
     axes = Figure().add_subplot()
@@ -70,6 +89,7 @@ def numbers(name, directory):
     if name in MOVED:
         steps = (0, scene.time.steps - 1)
         figure = FigureHooks.of(scene).frames(scene, history(scene), steps, "dda", 30.0)
+        found[f"{name}, fields"] = summed(written(scene, directory))
         found[f"{name}, frames"] = summed(number for frame in figure.axes for number in drawn(frame))
     return found
 
@@ -112,7 +132,8 @@ def test_problems_of_blocks_are_posed_and_measured_as_before():
     assert_kept(KEPT, "problems", found)
 
 
-def test_scenes_are_drawn_and_remarked_on_as_before(tmp_path):
+def test_scenes_are_drawn_and_remarked_on_as_before(tmp_path, monkeypatch):
+    monkeypatch.setattr(fields, "FRAMES", 5)
     found = {}
     for name in (*DRAWN, *STATED_WHOLE, *OF_PLANE):
         found |= numbers(name, tmp_path)

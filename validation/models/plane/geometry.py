@@ -122,7 +122,7 @@ def shared_edges(first: Vertices, second: Vertices, tolerance: float) -> Iterato
         for c, d in itertools.pairwise(other):
             p, q = ((place - a) * along.conjugate() for place in (d, c))
             start, end = max(0.0, p.real), min(length, q.real)
-            if max(abs(p.imag), abs(q.imag)) <= tolerance and p.real < q.real and end - start > tolerance:
+            if max(abs(p.imag), abs(q.imag)) <= tolerance and end - start > tolerance:
                 ends = (a + start * along, a + end * along)
                 yield (ends[0].real, ends[0].imag), (ends[1].real, ends[1].imag)
 

@@ -53,8 +53,9 @@ class PlaneContactSection(Section):
             raise ValueError(f"cohesion goes with friction only, got {self.cohesion:g} without it")
         if self.friction and self.shear_stiffness == 0:
             raise ValueError("shear_stiffness must be greater than 0 with friction, got 0")
-        if self.tension * (self.friction_coefficient or 0.0) > self.cohesion:
-            most = self.cohesion / (self.friction_coefficient or 1.0)
+        mu = self.friction_coefficient or 0.0
+        if self.tension * mu > self.cohesion:
+            most = self.cohesion / mu
             raise ValueError(f"tension must be at most cohesion / tan(friction) = {most:g} N, got {self.tension:g}")
         return self
 
