@@ -62,6 +62,8 @@ def test_the_ground_is_shaken_along_itself_by_a_cosine_alone(tmp_path):
     scene = box_scene(BOX, base=(0.013, 3.0), steps=9)
     ground = boxes_of(scene)
     assert (ground.base_amplitude, ground.base_frequency) == pytest.approx((0.013, 3.0))
+    turn = 6 * math.pi * 0.07
+    assert ground.base(0.07) == pytest.approx((0.013 * (1 - math.cos(turn)), 0.078 * math.pi * math.sin(turn)))
     time = np.linspace(0.0, 0.2, 41)
     cosine = 0.013 * (1 - np.cos(6 * np.pi * time))
     for name, x, y in (("up", cosine, time), ("straight", time, 0 * time)):

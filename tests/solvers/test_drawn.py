@@ -57,6 +57,8 @@ def drawn(axes):
             yield from np.ravel(artist.get_xy()).tolist()
         if hasattr(artist, "xyann"):
             yield from np.ravel([artist.xy, artist.xyann]).tolist()
+            if artist.arrow_patch is not None:
+                yield from (artist.arrow_patch.get_linewidth(), *artist.arrow_patch.get_edgecolor())
         if hasattr(artist, "get_text"):
             yield float(zlib.crc32(artist.get_text().encode()))
     yield axes.yaxis.get_tick_params().get("labelleft", True)

@@ -97,7 +97,7 @@ def balance_of(
         borne = -area(outline) * np.array(gravity) / math.hypot(*gravity)
         weights[number] = [*borne, x * borne[1] - y * borne[0]]
     for column, point in enumerate(points):
-        for place, direction in enumerate((point.normal, -1j * point.normal)):
+        for place, direction in enumerate((point.normal, 1j * point.normal)):
             force = [direction.real, direction.imag, (point.place.conjugate() * direction).imag]
             balance[point.block, :, 2 * column + place] += force
             balance[point.on, :, 2 * column + place] -= force
