@@ -1,14 +1,12 @@
 """Scenes of blocks that move: what is refused by field and value before anything runs, and what generators draw."""
 
 import copy
-import math
-from itertools import combinations
 
 import numpy as np
 import pytest
 
 from validation.errors import InputError
-from validation.models.plane.geometry import overlap, separated, shared_edges, triangles_of
+from validation.models.plane.geometry import overlap, separated, triangles_of
 from validation.report.figures.curves import HistoryPanel, common_range
 from validation.runs.columns import axis_of, unit_of
 from validation.runs.history import History
@@ -92,39 +90,6 @@ def test_a_gap_that_nobody_looked_at_is_no_number():
     assert not np.any(history.columns["square.2-floor.2.normal"])
 
 
-GENERATED = {
-    "stack": ({"count": 3, "rectangle": [2.0, 0.5], "offsets": [0.0, 0.3, 0.2]}, 3, 3.0),
-    "wall": ({"rows": 4, "bricks": 5, "rectangle": [0.4, 0.2]}, 22, 1.6),
-    "arch": (
-        {"radius": 1.0, "thickness": 0.1, "voussoirs": 7},
-        9,
-        14 * math.sin(math.pi / 14) * math.cos(math.pi / 14) * 0.1 + 0.02,
-    ),
-    "columns": ({"width": 1.0, "heights": [2.0, 4.0, 4.0], "dip": 14.0, "rise": 1.0}, 4, 10.0 + 8.0),
-    "slope": (
-        {"angle": 30.0, "length": 8.0, "rectangles": [[4.0, 0.5], [1.9, 0.5]], "noses": [0.0, 0.2]},
-        3,
-        3.0 + 8.0,
-    ),
-}
-
-
-def shared(outlines, i, j):
-    return shared_edges(outlines[i], outlines[j], 1e-9)
-
-
-@pytest.mark.parametrize("generator", GENERATED)
-def test_generators_draw_blocks_that_touch_and_do_not_overlap(generator):
-    keys, count, total = GENERATED[generator]
-    table = {"name": "made", "turned": 3.0, "at": [1.0, 2.0]} | keys
-    assembly = scene({"block": [], generator: [table]}).plane.assembly
-    outlines = [block.vertices for block in assembly.blocks]
-    assert len(outlines) == len(assembly.members["made"]) == count
-    assert sum(map(area, outlines)) == pytest.approx(total, rel=1e-12)
-    touching = {k for pair in combinations(range(count), 2) if any(shared(outlines, *pair)) for k in pair}
-    assert len(touching) == count
-
-
 def test_springs_of_a_pair_take_the_place_of_the_common_ones():
     contact = {"stiffness": 3e8, "friction": 30.0}
     pair = {"blocks": ["square", "floor"], "stiffness": 3e8}
@@ -140,15 +105,6 @@ def test_triangles_tile_an_outline_from_any_corner():
         outline = (*L_SHAPE[start:], *L_SHAPE[:start])
         areas = [area([outline[corner] for corner in triangle]) for triangle in triangles_of(outline)]
         assert len(areas) == 4 and min(areas) > 0.1 and sum(areas) == pytest.approx(3.0)
-
-
-def test_random_polygons_are_the_same_by_the_same_seed():
-    table = {"name": "made", "count": 20, "seed": 7, "radii": [0.1, 0.3], "across": 5}
-
-    def outlines(**changes):
-        return [block.vertices for block in scene({"block": [], "random": [table | changes]}).plane.assembly.blocks]
-
-    assert outlines() == outlines() != outlines(seed=8)
 
 
 @pytest.mark.parametrize(

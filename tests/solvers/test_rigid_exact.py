@@ -4,7 +4,6 @@ import math
 import tomllib
 from pathlib import Path
 
-import numpy as np
 import pytest
 from conftest import thinned
 from oracles.box_scenes import box_scene
@@ -70,25 +69,6 @@ def test_other_motions_are_refused_by_name():
     unknown = get_solver("rigid-exact").prepare(box_scene(BOX | {"lift": 1.0}))
     assert unknown.run().outcome is Outcome.NOT_APPLICABLE
     assert not refusal(box_scene(BOX, BOX, BOX, slope=28.0, friction=40.0))  # three stand to atan(0.4 / 0.75)
-
-
-def test_a_box_bounces_on_its_spring_as_small_steps_do():
-    speed, stiffness, step = (0.3, -0.7), 1e6, 5e-5
-    scene = box_scene(
-        BOX | {"lift": 0.2, "velocity": speed}, stiffness=stiffness, restitution=1.0, step=1e-3, steps=600
-    )
-    columns = motion(scene).columns
-    mass = 0.8 * 0.5 * 700.0
-    y, rate = 0.2, speed[1]
-    heights = [y]
-    for _ in range(12000):
-        rate -= step * (9.81 + stiffness / mass * min(y, 0.0))
-        y += step * rate
-        heights.append(y)
-    assert columns["box_1.y"] - 0.25 == pytest.approx(np.array(heights[20::20]), abs=1e-3)
-    assert columns["box_1.x"][-1] == pytest.approx(0.6 * 0.3)
-    pressed = -stiffness * np.minimum(columns["box_1.y"] - 0.25, 0.0)
-    assert columns["box_1-ground.normal"] == pytest.approx(pressed, abs=1e-3)
 
 
 def test_impacts_without_end_have_a_horizon(monkeypatch):
