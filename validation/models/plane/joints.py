@@ -108,6 +108,11 @@ class PlaneLoadSection(Section):
     edge: Annotated[Segment | None, Key("m", "of the traction, from a point to a point of the outline at t = 0")] = None
     ramp: Annotated[NonNegative, Key("s", "over which it grows from zero, linearly")] = 0.0
 
+    @property
+    def vector(self) -> tuple[float, float]:
+        """The force [N] or the traction [Pa]."""
+        return self.force or self.traction or (0.0, 0.0)
+
     @model_validator(mode="after")
     def _check(self) -> Self:
         if (self.force is None) == (self.traction is None):
