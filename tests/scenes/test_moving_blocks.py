@@ -90,16 +90,6 @@ def test_a_gap_that_nobody_looked_at_is_no_number():
     assert not np.any(history.columns["square.2-floor.2.normal"])
 
 
-def test_springs_of_a_pair_take_the_place_of_the_common_ones():
-    contact = {"stiffness": 3e8, "friction": 30.0}
-    pair = {"blocks": ["square", "floor"], "stiffness": 3e8}
-    common, own, soft = (
-        solve(scene(changes, columns=["square.y"]), "dda").history.columns["square.y"] - 0.5
-        for changes in ({}, {"pair": [pair]}, {"contact": contact})
-    )
-    assert own == pytest.approx(soft, rel=1e-9) and own[-1] < 1.1 * common[-1]
-
-
 def test_triangles_tile_an_outline_from_any_corner():
     for start in range(len(L_SHAPE)):
         outline = (*L_SHAPE[start:], *L_SHAPE[:start])
