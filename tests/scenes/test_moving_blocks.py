@@ -51,6 +51,7 @@ STATED = {"touch": [{"block": "square", "corner": corner, "on": "floor", "edge":
         (["energy.kinetic", "square-floor.normal"], "square-floor.x", {}),
         (["momentum.angular"], "square.4-floor.2.normal", {}),
         (["momentum.x"], "square.0-square.2.normal", {}),
+        (["block_2.x"], "block_1.x", square(name="")),
         (["square.0-floor.2.gap"], "square.2-floor.2.gap", STATED),
     ],
 )
@@ -84,7 +85,8 @@ def test_places_are_drawn_where_they_are_and_forces_from_zero():
 
 
 def test_a_gap_that_nobody_looked_at_is_no_number():
-    far = scene(columns=["square.2-floor.2.gap", "square.2-floor.2.normal"])
+    near = square(at=[0.0, 0.5 + 1e-10])  # which touches, so that nothing need move it
+    far = scene({"gravity": [0.0, 0.0]} | near, columns=["square.2-floor.2.gap", "square.2-floor.2.normal"])
     history = solve(far, "dda").history
     assert np.all(np.isnan(history.columns["square.2-floor.2.gap"]))
     assert not np.any(history.columns["square.2-floor.2.normal"])
