@@ -108,6 +108,8 @@ def test_triangles_tile_an_outline_from_any_corner():
         (2.5 - 3.0j, 0.0, "both"),
         (0.9 + 1.0j, 0.1, "none"),
         (0.0, 0.5, "none"),
+        (-0.5 - 0.3j, 0.35, "none"),
+        (1.6 + 0.2j, 0.4, "none"),
     ],
 )
 def test_outlines_that_are_not_convex_overlap_by_what_lies_inside(shift, depth, lines):

@@ -69,7 +69,17 @@ def scene_of(solver, name, directory):
     scene = made(name, directory) if name in STATED else load_scene(name).expand()[0]
     if solver == "rigid-exact":
         scene = scene.with_values({"run.columns": list(boxes_of(scene).columns)})
-    most = 2 if solver.endswith("events") else 300 if solver == "rigid-exact" else 4 if name == "row of cells" else 12
+    most = (
+        4
+        if solver == "bar-events"
+        else 2
+        if solver.endswith("events")
+        else 300
+        if solver == "rigid-exact"
+        else 4
+        if name == "row of cells"
+        else 12
+    )
     scene = scene.with_values({"time.steps": min(scene.time.steps, most)})
     if scene.fem.mesh is None:
         scene = scene.with_values({"fem.elements": 1 if "plate" in name else 2})

@@ -55,7 +55,7 @@ def test_boxes_are_on_the_ground_that_is_stated():
     assert (ground.ends, ground.friction, ground.stiffness) == ((-93.0, 107.0), 90.0, None)
     assert (ground.slope, ground.gravity) == (pytest.approx(13.0), pytest.approx(9.81))
     assert base_limit(scene) == 60.0 + 3.0 * 0.7 * 2
-    assert base_limit(load_scene("figures-3-4")) == base_limit()
+    assert base_limit(load_scene("figures-3-4")) == base_limit() == base_limit(load_scene("patch-strip"))
 
 
 def test_the_ground_is_shaken_along_itself_by_a_cosine_alone(tmp_path):
