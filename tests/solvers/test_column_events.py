@@ -94,4 +94,5 @@ def test_a_motion_of_too_much_work_ends_at_a_horizon_and_shows_how_far_it_is(mon
         said.append(run.notes[0])
         assert "column-events:full" in run.notes[0]
     assert [float(words.split()[3]) for words in said] == pytest.approx([0.00761436, 7.25176e-5], rel=1e-5)
+    assert "may have 152 steps" in said[0]
     assert shares == sorted(shares) and 0 < shares[-1] < 1
