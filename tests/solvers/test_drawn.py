@@ -106,7 +106,7 @@ GENERATED = (  # tables that draw several blocks
     ),
     RandomSection(name="stones", count=3, seed=5, radii=(0.4, 0.6), corners=(3, 4), across=2),
     StackSection(name="stack", count=2, rectangle=(2.1, 0.5), gap=0.1, offsets=(0.3, -0.1)),
-    WallSection(name="wall", rows=2, bricks=2, rectangle=(1.1, 0.4)),
+    WallSection(name="wall", rows=3, bricks=2, rectangle=(1.1, 0.4)),
 )
 
 

@@ -118,7 +118,7 @@ def test_a_table_of_a_history_is_read_or_its_defect_has_a_place():
 
 
 def test_a_solver_answers_in_one_of_a_few_forms():
-    rows = np.arange(6.0).reshape(2, 3)
+    rows = np.arange(15.0).reshape(5, 3)
     named = {"displacement": [1.0], "contact_pressure": [2.0]}
     assert columns_of(([1.0], [2.0])) == columns_of(named) == named
     found = columns_of(rows)

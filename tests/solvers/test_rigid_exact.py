@@ -71,9 +71,10 @@ def test_other_motions_are_refused_by_name():
     assert not refusal(box_scene(BOX, BOX, BOX, slope=28.0, friction=40.0))  # three stand to atan(0.4 / 0.75)
 
 
-def test_without_weight_a_box_rises_as_fast_as_it_rebounds():
-    history = motion(box_scene(BOX | {"lift": 0.3, "velocity": [0.0, -2.0]}, gravity=0.0, restitution=0.5))
-    assert history.columns["box_1.y"][-1] == pytest.approx(0.25 + 0.85)
+def test_a_box_rises_as_fast_as_it_rebounds_and_slides_down_as_it_flies():
+    thrown = BOX | {"lift": 0.3, "velocity": [0.4, -2.0]}
+    still, slope = (motion(box_scene(thrown, gravity=g, slope=30.0, restitution=0.5)).columns for g in (0.0, 8.0))
+    assert (still["box_1.y"][-1], slope["box_1.x"][-1]) == pytest.approx((0.25 + 0.85, 0.4 + 2.0))
 
 
 def test_impacts_without_end_have_a_horizon(monkeypatch):

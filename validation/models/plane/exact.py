@@ -247,7 +247,7 @@ def _flights(
     while True:
         start, height, speed = flights[-1]
         landing = math.sqrt(speed**2 + 2 * gravity * height)
-        if speed <= 0 and height == 0 and landing == 0:
+        if landing == 0:
             return flights
         if gravity == 0:
             lasted = height / -speed if speed < 0 else math.inf
