@@ -69,17 +69,8 @@ def scene_of(solver, name, directory):
     scene = made(name, directory) if name in STATED else load_scene(name).expand()[0]
     if solver == "rigid-exact":
         scene = scene.with_values({"run.columns": list(boxes_of(scene).columns)})
-    most = (
-        4
-        if solver == "bar-events"
-        else 2
-        if solver.endswith("events")
-        else 300
-        if solver == "rigid-exact"
-        else 4
-        if name == "row of cells"
-        else 12
-    )
+    usual = 2 if solver.endswith("events") else 4 if name == "row of cells" else 12
+    most = {"bar-events": 4, "rigid-exact": 100}.get(solver, usual)
     scene = scene.with_values({"time.steps": min(scene.time.steps, most)})
     if scene.fem.mesh is None:
         scene = scene.with_values({"fem.elements": 1 if "plate" in name else 2})
@@ -94,9 +85,10 @@ def unless_refused(ask):
 
 
 def page(scene):
-    """Yield what is advised on the contacts of blocks that move, and the words of it."""
+    """Yield what is advised on contacts of blocks that move, and its words."""
     if scene.table(PlaneSection).moves:
-        advice = corner_springs.moving_advice(scene, 0.3)
+        # a density of which nothing is rounded half up
+        advice = corner_springs.moving_advice(scene.with_values({"plane.density": 1234.567}), 0.3)
         yield advice
         yield from corner_springs.lines(scene, "", advice)
 
