@@ -85,7 +85,7 @@ def unless_refused(ask):
 
 
 def page(scene):
-    """Yield what is advised on contacts of blocks that move, and its words."""
+    """Yield the advice on contacts of blocks that move, and its words."""
     if scene.table(PlaneSection).moves:
         # a density of which nothing is rounded half up
         advice = corner_springs.moving_advice(scene.with_values({"plane.density": 1234.567}), 0.3)
