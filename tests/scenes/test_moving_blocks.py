@@ -85,7 +85,7 @@ def test_places_are_drawn_where_they_are_and_forces_from_zero():
 
 
 def test_a_gap_that_nobody_looked_at_is_no_number():
-    near = square(at=[0.0, 0.5 + 1e-10])  # which touches, so that nothing need move it
+    near = square(at=[0.0, 0.5 + 1e-10])  # touches
     far = scene({"gravity": [0.0, 0.0]} | near, columns=["square.2-floor.2.gap", "square.2-floor.2.normal"])
     history = solve(far, "dda").history
     assert np.all(np.isnan(history.columns["square.2-floor.2.gap"]))

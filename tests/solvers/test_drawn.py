@@ -140,7 +140,7 @@ def test_problems_of_blocks_are_posed_and_measured_as_before():
         numbers = []
         for case in {posed.cases[0].label: posed.cases[0], posed.cases[-1].label: posed.cases[-1]}.values():
             scene = posed.scene(case)
-            if name in box_problems():  # whose boxes may stand anywhere
+            if name in box_problems():
                 places = {f"plane.block.{n}.at": [b.at[0] + 0.37, b.at[1]] for n, b in enumerate(scene.plane.block)}
                 scene = scene.with_values(places)
             for number in (case.quantities or posed.quantities)(scene):

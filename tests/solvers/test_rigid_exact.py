@@ -4,6 +4,7 @@ import math
 import tomllib
 from pathlib import Path
 
+import numpy as np
 import pytest
 from conftest import thinned
 from oracles.box_scenes import box_scene
@@ -71,10 +72,12 @@ def test_other_motions_are_refused_by_name():
     assert not refusal(box_scene(BOX, BOX, BOX, slope=28.0, friction=40.0))  # three stand to atan(0.4 / 0.75)
 
 
-def test_a_box_rises_as_fast_as_it_rebounds_and_slides_down_as_it_flies():
+def test_boxes_rebound_and_slide_down_as_they_fly():
     thrown = BOX | {"lift": 0.3, "velocity": [0.4, -2.0]}
     still, slope = (motion(box_scene(thrown, gravity=g, slope=30.0, restitution=0.5)).columns for g in (0.0, 8.0))
     assert (still["box_1.y"][-1], slope["box_1.x"][-1]) == pytest.approx((0.25 + 0.85, 0.4 + 2.0))
+    spring = motion(box_scene(BOX | {"lift": 0.3}, stiffness=1e6, restitution=1.0)).columns["box_1.y"]
+    assert np.abs(np.diff(spring)).max() < 0.025
 
 
 def test_impacts_without_end_have_a_horizon(monkeypatch):
