@@ -73,7 +73,9 @@ def test_no_row_beside_an_impact_is_one_of_a_flight():
     from validation.solvers.registry import solve
 
     for lift in np.linspace(0.9, 1.1, 23):
-        scene = scene_of("bouncing", **{"plane.block.1.at": [0.0, 0.25 + float(lift)], "time.steps": 200})
+        thrown = {"plane.block.1.velocity": [0.3, -0.2], "plane.block.1.spin": round(float(lift) - 1, 2)}
+        at = {"plane.block.1.at": [0.0, 0.25 + float(lift)]}
+        scene = scene_of("bouncing", **thrown, **at, **{"time.steps": 200})
         history = solve(scene, "rigid-exact").history
         ground = boxes_of(scene)
         energy = measures.energies(history, ground)[measures.in_flight(history, ground)]

@@ -87,7 +87,6 @@ def test_a_strip_with_a_hole_has_the_peak_of_howland(hole, peak):
 @pytest.mark.parametrize(
     ("name", "changes", "field"),
     [
-        ("plate", {"hole": 1.0}, "plane.plate"),
         ("plate", {"radius": 4.0}, "plane.plate"),
         ("plate", {"tension": 0.0, "cells": 51}, "plane.plate.cells"),
         ("disc", {"half_arc": 20.0}, "plane.disc"),

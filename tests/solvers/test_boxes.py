@@ -55,13 +55,15 @@ def test_boxes_are_on_the_ground_that_is_stated():
     assert (ground.ends, ground.friction, ground.stiffness) == ((-93.0, 107.0), 90.0, None)
     assert (ground.slope, ground.gravity) == (pytest.approx(13.0), pytest.approx(9.81))
     assert base_limit(scene) == 60.0 + 3.0 * 0.7 * 2
-    assert base_limit(load_scene("figures-3-4")) == base_limit()
+    assert base_limit(load_scene("figures-3-4")) == base_limit() == base_limit(load_scene("patch-strip"))
 
 
 def test_the_ground_is_shaken_along_itself_by_a_cosine_alone(tmp_path):
     scene = box_scene(BOX, base=(0.013, 3.0), steps=9)
     ground = boxes_of(scene)
     assert (ground.base_amplitude, ground.base_frequency) == pytest.approx((0.013, 3.0))
+    turn = 6 * math.pi * 0.07
+    assert ground.base(0.07) == pytest.approx((0.013 * (1 - math.cos(turn)), 0.078 * math.pi * math.sin(turn)))
     time = np.linspace(0.0, 0.2, 41)
     cosine = 0.013 * (1 - np.cos(6 * np.pi * time))
     for name, x, y in (("up", cosine, time), ("straight", time, 0 * time)):
@@ -75,7 +77,7 @@ def test_a_height_in_another_unit_is_named():
     scene = box_scene(BOX | {"lift": 0.3})
     hooks = ProblemHooks.of(scene)
     for unit, told in ((1.0, []), (1e3, ["box_1.y"]), (7.0, [])):
-        history = History(np.array([0.01, 0.02]), {"box_1.y": np.array([1.05, 1.04]) * unit})
+        history = History(np.array([0.01, 0.02]), {"box_1.y": np.array([1.05, 0.2]) * unit})
         found = list(hooks.other_units(scene, history))
         assert [column for column, _ in found] == told and all("mm" in rule for _, rule in found)
 

@@ -56,6 +56,10 @@ def test_the_drive_is_that_of_the_scene(drive, tmp_path):
         course = drive_of(scene, at, integral)()
         values = [float(course.piece_at(t).series(arb(t), 1.0, 1)[0]) for t in times.tolist()]
         np.testing.assert_allclose(values, expected, atol=1e-12 * max(np.abs(expected).max(), 1e-3))
+    before, after = (motion_at(scene, times[1:] + shift) for shift in (-1e-6, 1e-6))
+    for name, rate in (("displacement", motion.velocity[1:]), ("velocity", motion.acceleration[1:])):
+        slopes = (getattr(after, name) - getattr(before, name)) / 2e-6
+        np.testing.assert_allclose(slopes, rate, atol=1e-6 * max(np.abs(rate).max(), 1e-3))
 
 
 def test_notes_name_switches_and_the_proven_radius():
@@ -89,5 +93,6 @@ def test_a_motion_of_too_much_work_ends_at_a_horizon_and_shows_how_far_it_is(mon
         assert run.outcome is Outcome.HORIZON
         said.append(run.notes[0])
         assert "column-events:full" in run.notes[0]
-    assert said[0] != said[1]  # met on the way, and known before
+    assert [float(words.split()[3]) for words in said] == pytest.approx([0.00761436, 7.25176e-5], rel=1e-5)
+    assert "may have 152 steps" in said[0]
     assert shares == sorted(shares) and 0 < shares[-1] < 1

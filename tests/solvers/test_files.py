@@ -118,7 +118,7 @@ def test_a_table_of_a_history_is_read_or_its_defect_has_a_place():
 
 
 def test_a_solver_answers_in_one_of_a_few_forms():
-    rows = np.arange(6.0).reshape(2, 3)
+    rows = np.arange(15.0).reshape(5, 3)
     named = {"displacement": [1.0], "contact_pressure": [2.0]}
     assert columns_of(([1.0], [2.0])) == columns_of(named) == named
     found = columns_of(rows)
@@ -169,14 +169,16 @@ def test_a_table_that_cannot_be_read_is_a_defect(tmp_path):
         with pytest.raises(DefectsError, match=said):
             defects.check()
     (tmp_path / "field-locked.csv").write_text("time,displacement\n0.001,\n")
-    assert get_solver(f"{tmp_path}/").solve(LOCKED.with_values({"time.steps": 1})).outcome is Outcome.NOT_RUN
+    files = get_solver(f"{tmp_path}/")
+    assert files.solve(LOCKED.with_values({"time.steps": 1})).outcome is Outcome.NOT_RUN
+    assert files.prepare(LOCKED).assumed_static() == get_solver("dda").static(LOCKED)
     assert get_solver(str(tmp_path / "none.csv")).read(LOCKED).outcome is Outcome.NOT_APPLICABLE
 
 
 def test_what_cannot_be_started_and_kinds_without_words(tmp_path):
     path = Path(program(tmp_path, "exit 0"))
     path.write_bytes(b"\x7fELF no such thing")
-    assert completed(get_solver(str(path)), SCENE).outcome is Outcome.RAISED
+    assert get_solver(str(path)).read(SCENE).outcome is Outcome.RAISED
     plane = completed(get_solver(str(path)), load_scene("patch-strip").expand()[0])
     assert plane.outcome is Outcome.NOT_APPLICABLE
 

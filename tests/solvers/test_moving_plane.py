@@ -7,8 +7,7 @@ import meshio
 import numpy as np
 import pytest
 
-from validation.errors import InputError
-from validation.models.plane.motion import forces_at, outlines_at
+from validation.models.plane.motion import forces_at
 from validation.runs.run import Outcome
 from validation.scenes.scene import parse_scene
 from validation.solvers.registry import get_solver, solve
@@ -56,31 +55,9 @@ def test_a_block_slides_by_its_friction_and_its_fields_and_columns_hold_the_forc
     assert sum(forces) @ outward == pytest.approx(normal) == pytest.approx(MASS * 9.81 * math.cos(slope), rel=1e-3)
     assert sum(forces) @ uphill == pytest.approx(mu * normal)
     mesh = meshio.read(tmp_path / "fields.vtu")
-    outlines = np.vstack(outlines_at(scene.plane.assembly, history, 199))
     points = mesh.points + mesh.point_data["displacement"]
-    assert points[:, :2] == pytest.approx(outlines, abs=1e-12) and len(mesh.cells_dict["triangle"]) == 6
-    drawn = mesh.point_data["contact force"][4:6, :2]
-    assert drawn == pytest.approx(np.array(forces))
-    assert outlines[4:6] == pytest.approx(np.array(places))
-
-
-@pytest.mark.parametrize(
-    ("changes", "field", "value"),
-    [
-        ({"pair": [{"blocks": ["slope_1", "wall"], "stiffness": 1e3}]}, "plane.pair.0.stiffness", "24.5 m"),
-        (
-            {"contact": {"stiffness": 2e3}, "pair": [{"blocks": ["slope_1", "wall"]}]},
-            "plane.contact.stiffness",
-            "12.3 m",
-        ),
-        ({"contact": {"stiffness": 2000.0}, "gravity": [0.0, 0.0]}, "plane.contact.stiffness", "1.12 m"),
-    ],
-)
-def test_springs_that_a_block_falls_through_are_refused(changes, field, value):
-    """By its weight, 24.5 kN of 2.5 t, or by the energy of 1 m/s."""
-    with pytest.raises(InputError) as refusal:
-        sliding(**changes)
-    assert (refusal.value.field, refusal.value.value) == (field, value)
+    assert points[4:6, :2] == pytest.approx(np.array(places))
+    assert mesh.point_data["contact force"][4:6, :2] == pytest.approx(np.array(forces))
 
 
 def test_a_free_block_turns_from_where_it_was_put():

@@ -55,7 +55,6 @@ SCENES = {
     "springs": made("layers on springs", HERE),
     "cells": made("row of cells", HERE),
     "plate": made("pulled plate", HERE),
-    "strip": load_scene("patch-strip").expand()[0],
     "boxes": box_scene({}),
 }
 RAMP = SCENES["rough"].with_values({"load.ramp": 0.01})

@@ -2,6 +2,7 @@
 
 import pytest
 from conftest import thinned
+from flint import ctx
 from mpmath import mp, mpf
 from oracles import block_in_digits
 
@@ -32,6 +33,7 @@ def test_the_block_by_trace_and_determinant_is_the_block_by_steps(scene, outline
     block = get_solver("dda").prepare(case)
     reference = block_in_digits.locked_history(block.model, block.scheme, case.time.steps)
     found = precise_block.history(case, COLUMNS)
+    assert ctx.prec == 53
     for name, exact in zip(COLUMNS, reference, strict=True):
         with mp.workdps(80):
             peak = max(abs(x) for x in exact)

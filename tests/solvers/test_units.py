@@ -86,6 +86,7 @@ def test_a_bad_answer_in_si_is_no_slip_of_units(scene, times):
 def test_a_history_without_the_displacement_has_no_shape(scene):
     run = run_of_columns(scene, {"velocity": columns_of(scene)["displacement"]})
     assert run.outcome is Outcome.WRONG_SHAPE and "velocity" in run.notes[0]
+    assert "step 0" in run_of_columns(scene, {"displacement": np.zeros(scene.time.steps + 1)}).notes[0]
 
 
 def test_time_is_judged_before_the_columns(scene):

@@ -403,7 +403,7 @@ def _cuts(scene: Scene) -> list[dict[str, Any]]:
 
     Each present block is cut upwards, and sideways where it strains sideways.
     """
-    across, upwards = scene.block.subdivide or (1, 1)
+    across, upwards = scene.block.cuts
     cuts: list[dict[str, Any]] = [{}]
     for pieces in (2, 4) if scene.block.rectangle is not None else ():
         sideways = pieces if scene.block.poisson else 1

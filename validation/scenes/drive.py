@@ -51,12 +51,8 @@ def motion_at(scene: Scene, instants: Array) -> Motion:
 def _signal(section: InputSection) -> Signal:
     if section.record is not None:
         return partial(recorded, *read_drive(Path(section.record), section.at))
-    size = (section.velocity if section.at == "base" else section.pressure) or 0.0
-    if section.shape in ("half-sine", "triangle"):
-        pulse = half_sine if section.shape == "half-sine" else triangle
-        return partial(pulse, size, section.duration or 1.0)
-    wave = {"ricker": ricker, "sine": sine, "cosine": cosine}[section.shape or "ricker"]
-    return partial(wave, size, section.frequency or 1.0)
+    shapes = {"half-sine": half_sine, "triangle": triangle, "ricker": ricker, "sine": sine, "cosine": cosine}
+    return partial(shapes[str(section.shape)], *section.pulse)
 
 
 def ricker(size: float, frequency: float, time: Array) -> Parts:

@@ -71,9 +71,7 @@ def direction(record: Record) -> tuple[float, float]:
     InputError
         The base does not move, or along no straight line.
     """
-    moved = np.column_stack([record.x, record.y])
-    moved = moved / (np.max(np.abs(moved)) or 1.0)
-    _, sizes, lines = np.linalg.svd(moved, full_matrices=False)
+    _, sizes, lines = np.linalg.svd(np.column_stack([record.x, record.y]), full_matrices=False)
     if sizes[0] == 0:
         raise InputError("must move for a response to it", field="load.base_motion", value="a base at rest")
     if len(sizes) > 1 and sizes[1] > STRAIGHT * sizes[0]:

@@ -154,6 +154,11 @@ class BlockSection(Section):
         return (x1 - x0, y2 - y0) if is_upright else None
 
     @property
+    def cuts(self) -> tuple[int, int]:
+        """Sub-blocks along the base and upwards; one of a whole block."""
+        return self.subdivide or (1, 1)
+
+    @property
     def base_length(self) -> float:
         """Length a of the base edge [m]."""
         (x1, y1), (x2, y2) = self.edge(self.base)

@@ -98,7 +98,7 @@ class SubBlocks(OneBlock):
         super().__init__(scene, full)
         b = scene.block
         with naming(scene):
-            self.system = dda.subdivided(self.model, *b.subdivide or (1, 1), b.glue_ratio * b.young, b.pattern)
+            self.system = dda.subdivided(self.model, *b.cuts, b.glue_ratio * b.young, b.pattern)
         self.body = self.system
 
     def solve_steps(self, steps: int, columns: Sequence[str]) -> dda.Result:

@@ -22,6 +22,7 @@ from validation.scenes.scene import Scene
 from validation.solvers import opened
 from validation.solvers.contract import OF_SCHEMES, LineStyle, Prepared, Role, Solver, completed
 from validation.solvers.translation import check_columns
+from validation.theory import statics
 
 if TYPE_CHECKING:
     from fem_reference.events import bar_events, block_events
@@ -54,7 +55,7 @@ SWITCHES_LISTED = 6  # switches that a note names
 
 def data_of(scene: Scene) -> dict[str, float]:
     """Return what block and bar of a scene have in common: size, material, loads, gap and velocity."""
-    width, height = scene.block.rectangle or (0.0, 0.0)
+    width, height = statics.size(scene)
     b = scene.block
     c = scene.contact
     q = scene.load

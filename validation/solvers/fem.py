@@ -112,7 +112,6 @@ class Mesh(Prepared):
         self.full = full
         self.problem = problem_of(scene)
         self.scheme = scheme_of(scene)
-        self.building = 0.0  # s
 
     @cached_property
     def model(self) -> Model:

@@ -80,7 +80,7 @@ def _is_driven_slowly(scene: Scene) -> bool:
 
 def _first_frequency(scene: Scene) -> float | None:
     """Return the frequency of the first mode [rad/s], contacts closed and sticking; None where it is not known."""
-    if math.prod(scene.block.subdivide or (1,)) > MOST_SUB_BLOCKS:
+    if math.prod(scene.block.cuts) > MOST_SUB_BLOCKS:
         return None
     with suppress(InputError):  # DDA does not take the scene
         return dda_modes(closed(scene))[0].frequency

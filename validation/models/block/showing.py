@@ -113,7 +113,7 @@ def _block(scene: Scene) -> Iterator[Number]:
 
 
 def _modes(scene: Scene) -> Iterator[Number]:
-    if math.prod(scene.block.subdivide or (1,)) > MOST_BLOCKS:
+    if math.prod(scene.block.cuts) > MOST_BLOCKS:
         return
     with suppress(InputError):  # no modes: the motion is not linear, or DDA does not take the scene
         modes = dda_modes(scene)

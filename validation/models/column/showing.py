@@ -61,7 +61,7 @@ class HOOKS(ShowingHooks):
             if math.isfinite(speed):
                 yield from _layer(scene, place, speed, height)
         yield from _contacts(scene)
-        if math.isinf(top_impedance) or travel_time == 0:  # rigid blocks carry no wave
+        if math.isinf(top_impedance):  # rigid blocks carry no wave
             return
         yield Number("H/c", travel_time, "s", "travel time of the wave through the column")
         if column.law == "bonded":

@@ -283,3 +283,8 @@ class InputSection(Section):
         if more := sorted(stated_keys - needed):
             raise ValueError(f"{more[0]} does not go with {what}, got {getattr(self, more[0])!r}")
         return self
+
+    @property
+    def pulse(self) -> tuple[float, float]:
+        """Greatest value, and duration [s] or frequency [Hz] as the shape has it; zeros of a record."""
+        return self.velocity or self.pressure or 0.0, self.duration or self.frequency or 0.0

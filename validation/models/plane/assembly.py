@@ -211,17 +211,16 @@ def _loads(plane: PlaneContents, assembly: Assembly) -> Iterator[BlockLoad]:
     for number, load in enumerate(plane.load):
         field = f"load.{number}"
         named = range(len(blocks)) if load.block is None else _named(members, load.block, f"{field}.block")
-        if load.force is not None:
-            yield BlockLoad(_one(members, str(load.block), f"{field}.block"), load.force, load.at, None, load.ramp)
+        if load.edge is None:
+            yield BlockLoad(_one(members, str(load.block), f"{field}.block"), load.vector, load.at, None, load.ramp)
             continue
-        edge, vector = load.edge or ((0.0, 0.0), (0.0, 0.0)), load.traction or (0.0, 0.0)
         parts = [
-            BlockLoad(block, vector, None, part, load.ramp)
+            BlockLoad(block, load.vector, None, part, load.ramp)
             for block in named
-            for part in _edge_parts(blocks[block], edge)
+            for part in _edge_parts(blocks[block], load.edge)
         ]
         if not parts:
-            raise ValueError(f"{field}.edge: must lie on the outline of a block, got {list(map(list, edge))}")
+            raise ValueError(f"{field}.edge: must lie on the outline of a block, got {list(map(list, load.edge))}")
         yield from parts
 
 

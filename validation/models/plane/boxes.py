@@ -107,8 +107,8 @@ class BoxesOnGround:
     restitution: float | None
     stiffness: float | None
     ends: tuple[float, float]
-    base_amplitude: float = 0.0
-    base_frequency: float = 1.0
+    base_amplitude: float
+    base_frequency: float
 
     def base(self, time: float) -> tuple[float, float]:
         """Return displacement [m] and velocity [m/s] of the ground along itself at an instant [s]."""

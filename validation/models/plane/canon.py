@@ -24,7 +24,7 @@ from validation.runs.history import Array, History
 from validation.scenes.outline import area
 from validation.scenes.scene import Scene
 from validation.theory.corner_impact import FallingRectangle, rigid_impulse
-from validation.theory.first_touch import MovingPolygon, first_touches, normals
+from validation.theory.first_touch import FirstTouch, MovingPolygon, first_touches
 from validation.theory.spinning import Slide, Spinning
 from validation.theory.truss import HalfTruss
 from validation.theory.wedges import Wedges
@@ -33,7 +33,6 @@ ACTIVE, PASSIVE = math.radians(50), math.radians(10)  # dips of the planes that 
 FALLEN = 0.02  # of the side of a square as large as the smallest block: what stands moves less, on any springs
 DEPARTED = 1e-3  # m, by which a block has left its straight path
 TURNED = 2 * UNKNOWN  # rad: an edge is turned by it if both its ends are off by one per cent of its length
-TOGETHER = 1e-9  # of the time: touches that are one
 
 
 # ---- the exact problem of a scene -----------------------------------------------------------------------------------
@@ -56,23 +55,13 @@ def rough(assembly: Assembly, first: int, second: int) -> float:
 
 
 def contact_of(scene: Scene) -> PlaneContactSection:
-    """Return the contact of a scene.
-
-    Raises
-    ------
-    ValueError
-        The scene states none.
-    """
-    contact = scene.table(PlaneSection).contact
-    if contact is None:
-        raise ValueError(f"contact: is required in {scene.name}, got none")
-    return contact
+    """Return the contact of a scene, a rigid one where it states none."""
+    return scene.table(PlaneSection).contact or PlaneContactSection(stiffness=math.inf)
 
 
 def stiffness_of(scene: Scene) -> float:
     """Return the normal spring of a corner [N/m]."""
-    contact = scene.table(PlaneSection).contact
-    return contact.stiffness if contact else math.inf
+    return contact_of(scene).stiffness
 
 
 def extent(block: PlacedBlock) -> tuple[float, float]:
@@ -150,6 +139,11 @@ def polygons(scene: Scene) -> tuple[MovingPolygon, MovingPolygon]:
     return first, second
 
 
+def touch_of(scene: Scene) -> FirstTouch | None:
+    """Return the first touch of the two blocks of a scene."""
+    return next(iter(first_touches(*polygons(scene), scene.time.duration, 0.0)), None)
+
+
 # ---- what is measured on answers ------------------------------------------------------------------------------------
 
 
@@ -163,7 +157,7 @@ def falls(scene: Scene) -> tuple[JudgedNumber, ...]:
     """Return whether blocks move that no forces between them hold."""
     plane = scene.table(PlaneSection)
     blocks = plane.assembly.blocks
-    mu = plane.contact.friction_coefficient if plane.contact else 0.0
+    mu = contact_of(scene).friction_coefficient
     rests = can_rest([block.vertices for block in blocks], [block.held for block in blocks], mu, plane.gravity)
     moving = moving_blocks(scene)
     least = FALLEN * math.sqrt(min(block.area for block in moving))
@@ -312,9 +306,7 @@ def corner(scene: Scene) -> tuple[JudgedNumber, ...]:
 
 def touching(scene: Scene) -> tuple[JudgedNumber, ...]:
     """Return when two blocks touch first and which way the first one is pushed, or whether they touch."""
-    until = scene.time.duration
-    first, second = polygons(scene)
-    touches = first_touches(first, second, until, TOGETHER * until)
+    touch = touch_of(scene)
     block = scene.table(PlaneSection).assembly.blocks[0]
 
     def departure(history: History) -> tuple[int, Array]:
@@ -324,10 +316,8 @@ def touching(scene: Scene) -> tuple[JudgedNumber, ...]:
         row = int(rows[0]) if len(rows) else len(off)
         return row, off[min(row, len(off) - 1)]
 
-    if not touches:
+    if touch is None:
         return (decided("touches", False, "they pass each other", lambda h: departure(h)[0] < len(h.time)),)
-    touch = touches[0]
-    low, high = normals(first, second, touch)
 
     def time(history: History) -> float | None:
         row, _ = departure(history)
@@ -335,17 +325,16 @@ def touching(scene: Scene) -> tuple[JudgedNumber, ...]:
 
     def beside(history: History) -> float:
         _, off = departure(history)
-        return math.remainder(math.atan2(off[1], off[0]) - (low + high) / 2, math.tau)
+        return math.remainder(math.atan2(off[1], off[0]) - touch.normal, math.tau)
 
     earliest = (1 - UNKNOWN) * touch.time
     latest = (1 + UNKNOWN) * touch.time + 2 * scene.time.step
     path = "one per cent of the speeds, and two rows, in which it leaves its path by a millimetre"
     ends = "both ends of the edge are known to one per cent of its length"
     push = "push beside the normal of the edge that is hit"
-    room = (high - low) / 2 + TURNED
     return (
         JudgedNumber("first row after the touch", "s", touch.time, earliest, latest, touch.time, path, time),
-        JudgedNumber(push, "rad", 0.0, -room, room, 1.0, ends, beside),
+        JudgedNumber(push, "rad", 0.0, -TURNED, TURNED, 1.0, ends, beside),
     )
 
 

@@ -198,8 +198,8 @@ def _on_plane(ground: BoxesOnGround, box: Box) -> Motion:
             sliding = np.minimum(time, stop)
             moved = velocity * sliding + slowing * sliding**2 / 2
         excess = max(0.0, abs(along) - grip)
-        if excess and not math.isinf(stop):  # from rest down the slope, also after it has come to rest
-            moved = moved + math.copysign(excess, along) * np.maximum(0.0, time - stop) ** 2 / 2
+        # from rest down the slope, also after it has come to rest
+        moved = moved + math.copysign(excess, along) * np.maximum(0.0, time - stop) ** 2 / 2
         return _poses(ground, time, x=box.x + moved, force=-box.mass * across)
 
     return motion
@@ -247,7 +247,7 @@ def _flights(
     while True:
         start, height, speed = flights[-1]
         landing = math.sqrt(speed**2 + 2 * gravity * height)
-        if speed <= 0 and height == 0 and landing == 0:
+        if landing == 0:
             return flights
         if gravity == 0:
             lasted = height / -speed if speed < 0 else math.inf

@@ -65,4 +65,4 @@ def write_fields(path: Path, assembly: Assembly, history: History) -> None:
 def _frames(steps: int) -> Iterator[int]:
     """Yield the steps that are written; the last one always is."""
     stride = -(-steps // FRAMES)
-    yield from range(steps - 1 - (steps - 1) // stride * stride, steps, stride)
+    yield from range((steps - 1) % stride, steps, stride)

@@ -73,8 +73,8 @@ class HOOKS(FigureHooks):
                 for block, outline in zip(assembly.blocks, outlines[step], strict=True):
                     axes.fill(*outline.T, **(FIXED if block.held else MOVING))
                 for place, force in forces[step]:
-                    tail = place - LONGEST * size * force / (largest or 1.0)
                     if np.any(force):
+                        tail = place - LONGEST * size * force / largest
                         look = {**arrow, "shrinkA": 0, "shrinkB": 0}
                         axes.annotate("", tuple(place), tuple(tail), arrowprops=look, zorder=4)
                 force_words = f", largest force {quantity(largest, 'N')}" if largest and number == 0 else ""

@@ -22,11 +22,11 @@ def near_pairs(outlines: Sequence[Vertices], reach: Array) -> Iterator[tuple[int
     high = np.array([np.max(outline, axis=0) for outline in outlines]) + reach[:, None]
     order = np.argsort(low[:, 0], kind="stable")
     ends = np.searchsorted(low[order, 0], high[order, 0], side="right")
-    for place, block in enumerate(order):
+    for place, block in enumerate(order.tolist()):
         others = order[place + 1 : ends[place]]
         overlapping = (low[others, 1] <= high[block, 1]) & (low[block, 1] <= high[others, 1])
-        for other in others[overlapping]:
-            yield (int(block), int(other)) if block < other else (int(other), int(block))
+        for other in others[overlapping].tolist():
+            yield min(block, other), max(block, other)
 
 
 def overlap(first: Vertices, second: Vertices) -> float:
@@ -122,7 +122,7 @@ def shared_edges(first: Vertices, second: Vertices, tolerance: float) -> Iterato
         for c, d in itertools.pairwise(other):
             p, q = ((place - a) * along.conjugate() for place in (d, c))
             start, end = max(0.0, p.real), min(length, q.real)
-            if max(abs(p.imag), abs(q.imag)) <= tolerance and p.real < q.real and end - start > tolerance:
+            if max(abs(p.imag), abs(q.imag)) <= tolerance and end - start > tolerance:
                 ends = (a + start * along, a + end * along)
                 yield (ends[0].real, ends[0].imag), (ends[1].real, ends[1].imag)
 

@@ -106,7 +106,7 @@ class PlateSection(BodySection):
         stated = [name for name in ("radius", "width", "height") if getattr(self, name) is not None]
         if stated not in (["radius"], ["width", "height"]):
             raise ValueError(f"needs a radius, or width and height, got {' and '.join(stated) or 'none'}")
-        least = self.radius or min(self.sides) / 2
+        least = min(self.sides) / 2
         if self.hole >= least:
             raise ValueError(f"hole must be within the outline, below {least:g} m, got {self.hole:g}")
         return self
@@ -114,13 +114,14 @@ class PlateSection(BodySection):
     @property
     def sides(self) -> tuple[float, float]:
         """Width and height, of a round plate its diameter twice [m]."""
-        return self.width or 2 * (self.radius or 0.0), self.height or 2 * (self.radius or 0.0)
+        diameter = 2 * (self.radius or 0.0)
+        return self.width or diameter, self.height or diameter
 
     def grid(self) -> list[list[Point]]:
         """Return the nodes: radii in geometric progression from the hole to the outline, the rectangle's corner one."""
         n = self.cells
         angles = [math.pi / 2 * j / n for j in range(n + 1)]
-        outer = [self.radius or 0.0] * (n + 1)
+        outer = [self.sides[0] / 2] * (n + 1)
         if self.radius is None:
             x, y = self.sides[0] / 2, self.sides[1] / 2
             corner = math.atan2(y, x)

@@ -53,8 +53,9 @@ class PlaneContactSection(Section):
             raise ValueError(f"cohesion goes with friction only, got {self.cohesion:g} without it")
         if self.friction and self.shear_stiffness == 0:
             raise ValueError("shear_stiffness must be greater than 0 with friction, got 0")
-        if self.tension * (self.friction_coefficient or 0.0) > self.cohesion:
-            most = self.cohesion / (self.friction_coefficient or 1.0)
+        mu = self.friction_coefficient or 0.0
+        if self.tension * mu > self.cohesion:
+            most = self.cohesion / mu
             raise ValueError(f"tension must be at most cohesion / tan(friction) = {most:g} N, got {self.tension:g}")
         return self
 
@@ -106,6 +107,11 @@ class PlaneLoadSection(Section):
     traction: Annotated[tuple[Real, Real] | None, Key("Pa", "in x and y")] = None
     edge: Annotated[Segment | None, Key("m", "of the traction, from a point to a point of the outline at t = 0")] = None
     ramp: Annotated[NonNegative, Key("s", "over which it grows from zero, linearly")] = 0.0
+
+    @property
+    def vector(self) -> tuple[float, float]:
+        """The force [N] or the traction [Pa]."""
+        return self.force or self.traction or (0.0, 0.0)
 
     @model_validator(mode="after")
     def _check(self) -> Self:

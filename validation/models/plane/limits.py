@@ -18,6 +18,7 @@ from scipy.optimize import brentq, linprog
 from validation.models.plane.blocks import Vertices as Outline
 from validation.models.plane.blocks import centroid
 from validation.models.plane.generators import ArchSection, ColumnsSection, GeneratorSection
+from validation.models.plane.geometry import near_pairs
 from validation.runs.history import Array
 from validation.scenes.outline import area
 
@@ -37,17 +38,13 @@ class ContactPoint(NamedTuple):
 
 def contact_points(outlines: Sequence[Outline]) -> Iterator[ContactPoint]:
     """Yield every corner on an edge: inside of it, or at its end where two faces lie on each other."""
-    corners = [np.array(outline) for outline in outlines]
-    lows = np.array([points.min(axis=0) - NEAR for points in corners])
-    highs = np.array([points.max(axis=0) for points in corners])
-    below = np.all(lows[:, None] <= highs, axis=2)
-    is_near = below & below.T
-    rings = [points @ (1, 1j) for points in corners]
+    near = {*near_pairs(outlines, np.full(len(outlines), NEAR))}
+    rings = [np.array(outline) @ (1, 1j) for outline in outlines]
     for block, ring in enumerate(rings):
         faces = np.roll(ring, -1) - ring
         faces = faces / np.abs(faces)
         for on, others in enumerate(rings):
-            if block == on or not is_near[block, on]:
+            if (min(block, on), max(block, on)) not in near:
                 continue
             starts = others[:, None]  # edges of the other block along the first axis, corners of this along the second
             edges = np.roll(starts, -1, axis=0) - starts
@@ -97,7 +94,7 @@ def balance_of(
         borne = -area(outline) * np.array(gravity) / math.hypot(*gravity)
         weights[number] = [*borne, x * borne[1] - y * borne[0]]
     for column, point in enumerate(points):
-        for place, direction in enumerate((point.normal, -1j * point.normal)):
+        for place, direction in enumerate((point.normal, 1j * point.normal)):
             force = [direction.real, direction.imag, (point.place.conjugate() * direction).imag]
             balance[point.block, :, 2 * column + place] += force
             balance[point.on, :, 2 * column + place] -= force

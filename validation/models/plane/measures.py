@@ -130,8 +130,5 @@ def contact_time(history: History, gap: Array) -> float | None:
     opened = np.flatnonzero(~closed[first:])
     if first == 0 or not len(opened):
         return None
-    instants = []
-    for row in (first, first + int(opened[0])):
-        share = float(gap[row - 1] / (gap[row - 1] - gap[row]))
-        instants.append(float(history.time[row - 1] + share * (history.time[row] - history.time[row - 1])))
-    return instants[1] - instants[0]
+    start, end = (row + float(gap[row - 1] / (gap[row - 1] - gap[row])) for row in (first, first + int(opened[0])))
+    return (end - start) * float(history.time[1] - history.time[0])

@@ -114,6 +114,10 @@ class MovingMesh(Prepared):
             return total - total[0] if place.part == "balance" else result.energy[OF_ENERGY[place.part]]
         if place.whole:
             return np.asarray(result.momentum[:, [*OF_MOMENTUM].index(place.part)])
+        if place.pair is not None:
+            pair = {names.index(name) for name in place.pair}
+            between = [k for k, one in enumerate(self.assembly.contacts) if {one.block, one.on} == pair]
+            return np.asarray(result.normal[:, between].sum(axis=1))
         if place.contact is not None:
             contact = numbers_of(place.contact, names)
             contacts = [one[:4] for one in self.assembly.contacts]

@@ -74,7 +74,7 @@ def _glued_rows(plane: PlaneSection) -> tuple[int, Rows]:
     if any(plane.gravity):
         beside.append(TEXTS.text("gravity", *plane.gravity))
     beside += [TEXTS.text(name, getattr(plane, name)) for name in BODIES if getattr(plane, name)]
-    beside += [TEXTS.text("traction", *(load.traction or ()), _segment(load.edge)) for load in plane.load if load.edge]
+    beside += [TEXTS.text("traction", *load.vector, _segment(load.edge)) for load in plane.load if load.edge]
     return across, box_rows(across, body_height(across, slenderness), beside)
 
 
@@ -124,8 +124,7 @@ def _words(plane: PlaneSection, assembly: Assembly) -> list[str]:
         lines.append(TEXTS.text("gravity", *plane.gravity) + (TEXTS.text("ramp", plane.ramp) if plane.ramp else ""))
     for load in plane.load:
         where = load.block or "the outline"
-        vector = load.traction if load.force is None else load.force
-        lines.append(TEXTS.text("force" if load.force else "traction", *(vector or (0.0, 0.0)), where))
+        lines.append(TEXTS.text("force" if load.force else "traction", *load.vector, where))
     for block in moving[: MOST_ROWS // 2]:
         if block.spin or any(block.velocity):
             lines.append(TEXTS.text("velocity", block.name, *block.velocity, block.spin))

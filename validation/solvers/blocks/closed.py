@@ -51,8 +51,7 @@ def opening_system_frequency(scene: Scene) -> float:
     b = scene.block
     if math.isinf(scene.contact.stiffness):
         return math.inf
-    columns, rows = b.subdivide or (1, 1)
-    return dda.highest_frequency(dda.subdivided(closed_model(scene), columns, rows, b.glue_ratio * b.young, b.pattern))
+    return dda.highest_frequency(dda.subdivided(closed_model(scene), *b.cuts, b.glue_ratio * b.young, b.pattern))
 
 
 def rolling_frequency(scene: Scene) -> float:

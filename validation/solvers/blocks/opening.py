@@ -152,8 +152,7 @@ class OpeningSubBlocks(OpeningBlock):
         super().__init__(scene, scheme, motion, full)
         b = scene.block
         with naming(scene):
-            columns, rows = b.subdivide or (1, 1)
-            self.body = dda.opening_subdivided(self.model, columns, rows, b.glue_ratio * b.young, b.pattern)
+            self.body = dda.opening_subdivided(self.model, *b.cuts, b.glue_ratio * b.young, b.pattern)
 
     def highest_frequency(self) -> float:
         """Return the largest frequency of the sub-blocks while all points of the base are closed [rad/s]."""

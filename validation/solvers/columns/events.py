@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -70,18 +71,9 @@ def drive_of(scene: Scene, at: str, integral: bool) -> Drive:
     if section.record is not None:
         times, values, order = read_drive(Path(section.record), section.at)
         return drives.integrated(drives.recorded(times.tolist(), values.tolist()), order - 1 + integral)
-    size = (section.velocity if at == "base" else section.pressure) or 0.0
-    frequency = section.frequency or 1.0
-    duration = section.duration or 1.0
-    if section.shape == "half-sine":
-        drive = drives.half_sine(size, duration)
-    elif section.shape == "triangle":
-        drive = drives.triangle(size, duration)
-    elif section.shape == "ricker":
-        drive = drives.ricker(size, frequency)
-    else:
-        drive = drives.sine(size, frequency, quarters=1 if section.shape == "cosine" else 0)
-    return drives.integrated(drive, int(integral))
+    shapes = {"half-sine": drives.half_sine, "triangle": drives.triangle, "ricker": drives.ricker}
+    shapes |= {"sine": drives.sine, "cosine": partial(drives.sine, quarters=1)}
+    return drives.integrated(shapes[str(section.shape)](*section.pulse), int(integral))
 
 
 def problem_of(scene: Scene) -> ColumnProblem:

@@ -21,7 +21,7 @@ def linear_elements(case: Scene) -> Band:
 def glued_column(case: Scene) -> Band:
     """Return the static v of the centroid of a glued column, mu = 0 [m]: block on springs, and its joints."""
     width, _ = statics.size(case)
-    _, n = case.block.subdivide or (1, 1)
+    _, n = case.block.cuts
     joint = 1 / (2 * case.block.glue_ratio * case.block.young)
     value = statics.static_displacement(case) - (n - 1) / 2 * joint * case.load.pressure * width
     return near(value, 1e4 * spectra.EPS)
@@ -47,7 +47,7 @@ def rocking_frequency(case: Scene) -> Band:
 
 def cut(case: Scene) -> Metrics:
     """Return how many sub-blocks stand on each other, and the width of the patches that carry elements [m]."""
-    _, n = case.block.subdivide or (1, 1)
+    _, n = case.block.cuts
     return {"n": n, "patch": case.fem.patch_width or case.block.base_length}
 
 

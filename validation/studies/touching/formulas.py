@@ -12,7 +12,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from validation.metrics.values import or_nan
-from validation.models.plane.canon import TOGETHER, contact_of, falling, polygons, stiffness_of
+from validation.models.plane.canon import contact_of, falling, polygons, stiffness_of, touch_of
 from validation.models.plane.tables import PlaneSection
 from validation.runs.history import History
 from validation.runs.row import Metrics, Row
@@ -21,7 +21,7 @@ from validation.scenes.scene import Scene
 from validation.solvers.plane.blocks import first_contact
 from validation.suite.bands import Band, Runs, cases
 from validation.theory.corner_impact import FallingRectangle, Rebound, on_springs, rigid_impulse
-from validation.theory.first_touch import FirstTouch, first_touches, normals
+from validation.theory.first_touch import normals
 
 STIFF = "touching-stiff"
 TOUCHED = 1e-9  # m/s: a change of velocity by which a contact has pressed
@@ -29,13 +29,6 @@ CORNERS = "corner-corner"  # as the query calls it
 
 
 # ---- who touches whom, and when -------------------------------------------------------------------------------------
-
-
-def touch_of(scene: Scene) -> FirstTouch | None:
-    """Return the first touch of the two blocks of a scene."""
-    until = scene.time.duration
-    touches = first_touches(*polygons(scene), until, TOGETHER * until)
-    return touches[0] if touches else None
 
 
 def query(scene: Scene, row: Row) -> Metrics:
