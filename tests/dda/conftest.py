@@ -14,13 +14,24 @@ import pytest
 from oracles.stand_ins import kept
 
 KEPT = Path(__file__).with_name("numbers.toml")
-DERIVED = ("energies", "slide", "gap", "velocity", "horizontal_velocity", "states", "angle")  # of a history on contact
+DERIVED = ("energies", "slide", "gap", "velocity", "horizontal_velocity", "states", "slip", "angle", "area")
 DIGITS = 6e-6
 
 
 def flat(values):
     """Return numbers in a row."""
     return np.nan_to_num(np.ravel(values).astype(complex), posinf=1e9, neginf=-1e9)
+
+
+def evened(table, least):
+    """Return the values of a table in a row, each part over its greatest one, so that none hides the others."""
+    parts = [np.ravel(table[name]) for name in sorted(table) if name != "balance"]
+    sizes = [np.max(np.abs(part), initial=0.0) for part in parts]
+    return flat(
+        np.concatenate(
+            [part / (size + (least or 1e-5 * max(sizes) or 1.0)) for part, size in zip(parts, sizes, strict=True)]
+        )
+    )
 
 
 def parts_of(result):
@@ -32,11 +43,11 @@ def parts_of(result):
     elif hasattr(result, "_asdict"):
         result = result._asdict()
     yield flat([value for value in result.values() if isinstance(value, int | float)])
-    for part in result.values():
+    for name, part in result.items():
         if isinstance(part, np.ndarray):
             yield flat(part)
         elif isinstance(part, dict):
-            yield flat(np.concatenate([np.ravel(part[name]) for name in sorted(part) if name != "balance"]))
+            yield evened(part, 1e-7 if name == "columns" else 0.0)
         elif hasattr(part, "_asdict"):
             yield from parts_of(part)
         elif isinstance(part, tuple) and part and not isinstance(part[0], str):

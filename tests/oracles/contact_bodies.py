@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from dda import (
+    COLUMNS,
     BaseMotion,
     Block,
     Load,
@@ -133,7 +134,7 @@ class OneBlock:
 
     @staticmethod
     def solve(model, scheme, steps, options):
-        return solve_unilateral(model, scheme, steps, options=UnilateralOptions(energies=True, **options))
+        return solve_unilateral(model, scheme, steps, COLUMNS, UnilateralOptions(energies=True, **options))
 
     @staticmethod
     def velocities(model, result):
@@ -203,7 +204,7 @@ class TurningBlock:
 
     @staticmethod
     def solve(model, scheme, steps, options):
-        return solve_unilateral(model, scheme, steps, options=UnilateralOptions(**options))
+        return solve_unilateral(model, scheme, steps, COLUMNS, UnilateralOptions(**options))
 
     @staticmethod
     def velocities(model, result):
