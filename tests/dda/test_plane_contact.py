@@ -1,6 +1,7 @@
 """Blocks in the plane on contacts that a scene states: closed forms, invariants, accounts."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -19,7 +20,7 @@ from dda import (
 from dda.contact.rows import FOUND, INSIDE, LOWER, NONE, OUTCOMES
 from dda.march.step import steps_by
 from dda.plane import outcomes, solution, step
-from dda.plane.outcomes import contact_name
+from dda.plane.outcomes import contact_name, stated_contacts
 from dda.plane.solution import PlaneContact
 
 
@@ -130,4 +131,6 @@ def test_contacts_are_named_by_their_blocks():
     base = PlaneBlock(rectangle(0, -1, 1, 1), 1000.0, fixed=True, name="base")
     model = PlaneModel([base, PlaneBlock(rectangle(0, 0, 1, 1), 1000.0, name="upper")])
     assert contact_name(model, PlaneContact(1, 2, 0, 3)) == "corner 2 of upper on edge 3 of base"
-    assert contact_name(model, PlaneContact(1, -1, 0, 0)) == "glue of upper and base"
+    joined = replace(model, bonds=[EdgeBond(1, 0, (0, 0), (1, 0), 1.0, 1.0)])
+    assert stated_contacts(joined) == [PlaneContact(1, -1, 0, -1)] * 2
+    assert contact_name(model, PlaneContact(1, -1, 0, -1)) == "glue of upper and base"

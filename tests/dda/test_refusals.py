@@ -129,13 +129,14 @@ BLOCKS = {
 
 
 def plane(blocks=("base", "upper"), contacts=(), bonds=(), loads=(), steps=1, **given):
+    scheme = scheme_of(given)
     model = dda.PlaneModel(
         [BLOCKS[name] for name in blocks],
         [dda.CornerOnEdge(*numbers, plane_springs(np.inf)) for numbers in contacts],
         bonds=[dda.EdgeBond(*ends, 1e9, 1e9) for ends in bonds],
         loads=[dda.PlaneLoad(**{"block": 1, "force": (1.0, 0.0)} | load) for load in loads],
     )
-    return dda.solve_plane(model, SCHEMES["average"], steps, **given)
+    return dda.solve_plane(model, scheme, steps, **given)
 
 
 ASKED = {
