@@ -35,34 +35,37 @@ def evened(table, least):
 
 
 def parts_of(result):
-    """Yield the numbers that a result or a table holds, array by array; those of a table within it are one array."""
+    """Yield name and numbers of all arrays in a result or a table; those of a table within it are one array."""
     if is_dataclass(result):
         names = [field.name for field in fields(result) if not field.name.endswith("_seconds")]
         names += [name for name in DERIVED if hasattr(type(result), name)]
         result = {name: getattr(result, name) for name in names}
     elif hasattr(result, "_asdict"):
         result = result._asdict()
-    yield flat([value for value in result.values() if isinstance(value, int | float)])
+    yield "", flat([value for name, value in result.items() if isinstance(value, int | float) and name != "solves"])
     for name, part in result.items():
         if isinstance(part, np.ndarray):
-            yield flat(part)
+            yield name, flat(part)
         elif isinstance(part, dict):
-            yield evened(part, 1e-7 if name == "columns" else 0.0)
+            yield name, evened(part, 1e-7 if name == "columns" else 0.0)
         elif hasattr(part, "_asdict"):
             yield from parts_of(part)
         elif isinstance(part, tuple) and part and not isinstance(part[0], str):
-            yield flat(part)
+            yield name, flat(part)
 
 
 def numbers_of(result):
-    """Return the numbers of a result, and the greatest value that each is a sum of."""
+    """Return the numbers of a result, the last of all that is whole, and the greatest value that each is a sum of."""
     numbers = []
     sizes = []
-    for values in parts_of(result):
-        if len(values):
-            order = np.arange(1.0, len(values) + 1)
-            numbers.append(float(np.cos(order) @ values.real + np.sin(order) @ values.imag))
-            sizes.append(float(np.abs(values).max()))
+    parts = []
+    counts = []
+    for name, part in parts_of(result):
+        (counts if np.array_equal(part, np.rint(part)) and name != "solves" else parts).append(part)
+    for values in [*parts, np.concatenate([[], *counts])]:
+        order = np.arange(1.0, len(values) + 1)
+        numbers.append(float(np.cos(order) @ values.real + np.sin(order) @ values.imag))
+        sizes.append(float(np.max(np.abs(values), initial=0.0)))
     return numbers, sizes
 
 
