@@ -6,6 +6,7 @@ written as nan, and stays so.
 
 import math
 import os
+import re
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 
@@ -75,8 +76,8 @@ def write(name, numbers):
     old = table.get(name, [])
     is_left = [place < len(old) and math.isnan(old[place]) for place in range(len(numbers))]
     table[name] = [math.nan if left else value for left, value in zip(is_left, numbers, strict=True)]
-    lines = [f'"{key}" = [{", ".join(f"{value:.6g}" for value in table[key])}]\n' for key in sorted(table)]
-    KEPT.write_text("".join(lines), encoding="utf-8")
+    lines = [f'"{key}" = [{",".join(f"{value:.6g}" for value in table[key])}]\n' for key in sorted(table)]
+    KEPT.write_text(re.sub(r"(?<=e)\+?(-?)0", r"\1", "".join(lines)), encoding="utf-8")
 
 
 @pytest.fixture(scope="session")
