@@ -238,8 +238,6 @@ def set_poses(blocks: Blocks, q: Matrix, D: Matrix, chords: Poses, ends: Poses) 
         chords.spin[i] = math.sin(half) / half if half != 0 else 1.0
         chords.stretch[i] = math.cos(half)
         ends.turn[i] = complex(math.cos(end), math.sin(end))
-        ends.spin[i] = 1.0
-        ends.stretch[i] = 1.0
         if blocks.modes[i] > RIGID:
             for k in range(3):
                 ends.e[i][k] = q[i][3 + k] + D[i][3 + k]

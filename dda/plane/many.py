@@ -338,8 +338,7 @@ def add_forces(many: Many, laws: Laws, work: Work, after: Rows, whole: float) ->
             after.force[r] += work.tried[r] * (laws.friction[k] * N + whole * laws.upper[r])
         elif not is_smooth(laws, k):
             displacement = whole * work.q[r] + contact_displacement(many.x, many.blocks, many.places, r)
-            if many.kappa[k] != 0.0:
-                displacement += many.kappa[k] * (N - whole * many.normal[k])
+            displacement += many.kappa[k] * (N - whole * many.normal[k])
             after.force[r] -= displacement * work.beta[k] / laws.compliance[r]
 
 

@@ -146,6 +146,8 @@ def test_touching_elastic_blocks_close_at_once_below_the_threshold_and_one_by_on
 
 def test_a_limit_of_six_solves_ends_the_run_of_six_touching_rigid_blocks():
     result = thrown(6, RIGID, 1e-3, 0.5, limit=6)
+    with pytest.raises(ValueError, match=r"^states: "):
+        result.state_of(0)
     assert result.outcome == "solve limit exceeded"
     assert len(result.time) == 0
     assert result.solves == 6
