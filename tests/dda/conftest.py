@@ -38,7 +38,7 @@ def evened(table, least):
 def parts_of(result):
     """Yield name and numbers of all arrays in a result or a table; those of a table within it are one array."""
     if is_dataclass(result):
-        names = [field.name for field in fields(result) if not field.name.endswith("_seconds")]
+        names = [field.name for field in fields(result) if not field.name.endswith(("_seconds", "time"))]
         names += [name for name in DERIVED if hasattr(type(result), name)]
         result = {name: getattr(result, name) for name in names}
     elif hasattr(result, "_asdict"):

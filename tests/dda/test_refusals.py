@@ -7,7 +7,6 @@ from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
-import pytest
 
 import dda
 from dda.bodies.column import Column, Layer, Spring

@@ -57,18 +57,6 @@ def test_roots_are_those_of_steps_written_as_in_the_papers(name, values, omega):
     assert largest == pytest.approx(np.abs(found), abs=2e-6)
 
 
-@few_schemes
-def test_only_the_leapfrog_grows_beyond_a_limit(name, values):
-    for gg in (1.0, 0.9):
-        scheme = scheme_of(name, values, 1.0, gg)
-        limit = math.sqrt(2 * (1 + gg)) if name == "leapfrog" else math.inf
-        for W in (0.999 * limit,) if limit < math.inf else (0.1, 3.0, 1e3):
-            assert abs(roots.roots(scheme, W)[0]) < 1 + 1e-12
-    if name == "leapfrog":
-        assert abs(roots.roots(scheme, 1.001 * limit)[0]) > 1
-        assert math.isnan(roots.damping_ratio(scheme, 1.001 * limit))
-
-
 def dense(model):
     """Return the model in all six unknowns, and the row of the displacement."""
     return System(model.mass, model.stiffness, lambda t: model.force * 1.0), 1
