@@ -22,7 +22,8 @@ MODELS = {
     "opening": dda.UnilateralModel(SQUARE, dda.Unilateral(**LAW), 5e6, eccentricity=0.3),
     "turning": RollingModel(SQUARE, dda.Unilateral(**LAW)),
 }
-MODELS |= {"textbook": MODELS["locked"], "sub-blocks": replace(MODELS["opening"], eccentricity=0.0)}
+MODELS |= dict.fromkeys(("textbook", "pieces"), MODELS["locked"])
+MODELS |= {"sub-blocks": replace(MODELS["opening"], eccentricity=0.0)}
 SCHEMES = {
     "average": dda.Scheme(0.25, 0.5, 1.0, 1e-3, "consistent"),
     "constant": dda.Scheme(0.5, 1.0, 1.0, 1e-3),
@@ -62,6 +63,8 @@ def history(of="opening", steps=3, columns=("displacement",), **given):
     body = model(of, given)
     if of == "locked":
         return dda.solve(body, scheme, steps, columns, **more)
+    if of == "pieces":
+        return dda.solve_system(dda.subdivided(body, 1, 1, 1e9), scheme, steps, columns)
     if of == "textbook":
         return dda.solve_textbook(body, scheme, steps)
     if of == "sub-blocks":
