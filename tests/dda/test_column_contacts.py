@@ -190,10 +190,9 @@ def test_a_rigid_block_on_a_shaken_base_moves_as_the_base_does(held):
         column = Column(blocks, "shear", law="frictional", joints=joints)
         names = ["displacement_1", "velocity_1", "contact_pressure"]
         for gg in (0.98, 1.0):  # which is not the base's
-            result = solve_column(column, Scheme(0.5, 1.0, gg, 1e-4), drive, names, [0.5], ColumnOptions(energies=True))
+            result = solve_column(column, Scheme(0.5, 1.0, gg, 1e-4), drive, names, [0.5])
             np.testing.assert_allclose(result.columns["displacement_1"], drive.displacement[1:], rtol=0, atol=1e-15)
             np.testing.assert_allclose(result.columns["velocity_1"], drive.velocity[1:], rtol=0, atol=1e-13)
-        held(f"carried {len(joints)}", result)
         force = result.columns["contact_pressure"]
         np.testing.assert_allclose(force, 5000 * drive.acceleration[1:], rtol=0, atol=0.03 * np.abs(force).max())
     foot = replace(column, joints=[Spring(0.0, math.inf), *joints])

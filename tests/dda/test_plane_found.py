@@ -95,36 +95,26 @@ def pile(count, seed):
     return blocks
 
 
-# of few the rest comes after what a test may take
-@pytest.mark.parametrize(
-    ("count", "steps", "least", "at_rest"),
-    [
-        pytest.param(5, 120, 2, False, marks=pytest.mark.long),
-        pytest.param(100, 3000, 101, True, marks=pytest.mark.long),
-    ],
-    ids=["few", "many"],
-)
-def test_polygons_dropped_in_a_box_keep_their_accounts(count, steps, least, at_rest):
+@pytest.mark.long
+def test_polygons_dropped_in_a_box_keep_their_accounts():
     stiffness = 1e8
-    blocks = pile(count, 3)
-    compiled = count > 10
+    blocks = pile(100, 3)
     springs = ContactSprings(stiffness, 4e7, friction=0.5)
-    result = history(model_of(blocks, springs), steps, gg=0.999, every=10 if compiled else 1, compiled=compiled)
+    result = history(model_of(blocks, springs), 3000, gg=0.999, every=10, compiled=True)
     energy = own_energy(result)
     given = result.energy["kinetic"][0] - np.min(result.energy["load"])
     assert np.max(np.diff(energy)) <= 1e-12 * given
     assert np.max(np.abs(result.energy["balance"])) < 1e-10 * given
-    assert len(result.contacts) >= least
+    assert len(result.contacts) > 100
     masses = np.array([block.density * block.block.section.area for block in blocks[3:]])
     speed = np.max(np.hypot(*np.moveaxis(result.velocity[..., :2], -1, 0)))
     weight = 9.81 * np.sum(masses)
     deepest = weight / stiffness + speed * np.sqrt(np.max(masses) / stiffness)  # of weight and of impact
     assert np.nanmin(np.where(result.normal > 0, result.gap, 0.0)) > -deepest
-    wide = 1.3 * np.ceil(np.sqrt(count))
+    wide = 13.0
     x, y = np.moveaxis(result.centroid[:, 3:], -1, 0)
     assert np.all((x > 0) & (x < wide) & (y > 0))  # nothing is lost
-    if at_rest:
-        assert result.energy["kinetic"][-1] < 1e-5 * np.max(result.energy["kinetic"])
+    assert result.energy["kinetic"][-1] < 1e-5 * np.max(result.energy["kinetic"])
 
 
 def crowd():
