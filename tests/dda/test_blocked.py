@@ -1,5 +1,6 @@
 """Blocked histories: equal to stepped ones, as many digits, logarithmic work."""
 
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -7,7 +8,7 @@ import pytest
 from conftest import thinned
 from faults import seams
 
-from dda import Block, Contact, Material, Scheme, TwoBlockModel, modal_form, named_scheme, solve
+from dda import BaseMotion, Block, Contact, Load, Material, Scheme, TwoBlockModel, modal_form, named_scheme, solve
 from dda.bodies.locked_block import modal_histories
 from dda.scheme import blocked as blocks
 from dda.scheme.roots import roots
@@ -57,4 +58,7 @@ def test_what_grows_and_no_other_is_stepped_and_says_so():
         reason = "a mode grows" if abs(roots(scheme, omega)[0]) > 1 + 1e-9 else None
         assert blocks.why_stepped(scheme, np.array([0.5 * omega, omega])) == reason, (scheme, omega)
     assert "stepped: w dt is outside 1e-15 to 1e+15" in solve(model(), Scheme(0.5, 1.0, 1.0, 1e-30), 4).notes
-    assert "blocked" in solve(model(), Scheme(0.25, 0.5, 1.0, 1e3), 4).notes
+    moved = Load(motion=BaseMotion([0.0], [[0.0, 0.0]]))
+    average = Scheme(0.25, 0.5, 1.0, 1e3)
+    for load, note in ((Load(1.0), "blocked"), (Load(ramp=0.1), "in a ramp"), (moved, "the base moves")):
+        assert note in solve(replace(model(), load=load), average, 4).notes[-1]

@@ -80,7 +80,7 @@ def check_against_the_papers(problem, scheme, name, parameters, held, rigid=Fals
         [float(height) for height in (*column.faces[1:], *middles, *feet)],
         ColumnOptions(energies=True, states=True),
     )
-    held(f"column of {n} by {name} {scheme.delta}", result)
+    held(f"{name} {scheme.delta:.2f}", result)
     assert result.outcome == "completed"
     for part, values in expected.items():
         observed = np.array([result.columns[column_name] for column_name in names[part]]).T
