@@ -15,7 +15,7 @@ from dda.linear import elimination, krylov
 
 SCHEME = Scheme(0.5, 1.0, 1.0, 1e-3)
 MOVED = BaseMotion([0.0, 1.0], [[0.0, 0.0], [0.03, -0.02]])
-LOAD = Load(pressure=2e6, traction=3e5, gravity=9.81, slope=8.0)
+LOAD = Load(pressure=2e6, traction=3e5, eccentricity=0.1, gravity=9.81, slope=8.0)
 
 
 def block(load=LOAD):
@@ -46,6 +46,13 @@ def test_a_base_at_its_last_position_carries_the_static_solution(body):
     shift = {"horizontal_displacement": 0.03, "displacement": -0.02}
     for name, value in rest.items():
         assert moved[name] == pytest.approx(value + shift.get(name, 0.0), rel=1e-9, abs=1e-12), name
+
+
+def test_the_static_solution_is_that_of_the_matrices_in_the_plane():
+    rest = dda.static(block())
+    del rest["contact_pressure"]
+    D = np.linalg.solve(block().stiffness, block().force)
+    assert D[[1, 0, 2, 3, 4, 5]] == pytest.approx([*rest.values()], rel=1e-9)
 
 
 @pytest.mark.parametrize("body", PLANE)

@@ -266,7 +266,7 @@ def random_rolling(seed):
     return RollingModel(Block(outline, material), law, load, **thrown), 10 ** rng.uniform(-3.5, -1.5)
 
 
-# ---- cases -----------------------------------------------------------------------------------------------------------
+# ---- cases ----
 
 NEWMARK = [
     Scheme(0.5, 1.0, 1.0, DT),
@@ -369,7 +369,7 @@ CASES = {
 }
 
 
-# ---- other steps -----------------------------------------------------------------------------------------------------
+# ---- other steps ----
 
 
 def put_stage(patch, change):
