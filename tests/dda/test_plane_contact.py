@@ -67,13 +67,13 @@ def test_a_driven_floor_gives_its_work_to_what_stands_on_it(held):
     held("driven floor", result)
 
 
-@pytest.mark.parametrize("young", thinned([math.inf, 1e8], 2))
+@pytest.mark.parametrize("young", thinned([1e8, math.inf], 2))
 def test_two_free_blocks_that_meet_off_centre_keep_their_momentum(young, held):
     """The edge belongs to a block that turns: its turn is part of every row."""
-    struck = PlaneBlock(rectangle(-1, -0.5, 2, 1), 2000.0, young, 0.2, spin=0.5)
+    struck = PlaneBlock([(-1, -0.5), (1, -0.5), (1, 0.44), (-1, 0.84)], 2000.0, young, 0.2, spin=0.5)
     corner = PlaneBlock([(0.7, 0.502), (1.3, 1.2), (0.2, 1.3)], 2000.0, young, 0.2, velocity=(0.2, -2.0))
     contacts = [CornerOnEdge(1, 0, 0, 2, ContactSprings(1e7, 4e6, 0.3))]
-    result = solve_plane(PlaneModel([struck, corner], contacts), scheme(CONSTANT, 3e-4), 130, compiled=False)
+    result = solve_plane(PlaneModel([struck, corner], contacts), scheme(CONSTANT, 6e-4), 50, compiled=False)
     held(f"two free blocks of {young}", result)
     assert result.normal.max() > 0 and not result.normal[-1].any()
     drift = np.ptp(result.momentum, axis=0)
