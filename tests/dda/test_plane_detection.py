@@ -275,7 +275,7 @@ def test_the_sweep_misses_no_pair(held):
 def test_convex_parts_of_an_outline(outline, least):
     size = 1e3
     parts = convex_parts(as_complex(size * outline))
-    assert least <= len(parts) <= 2 * least
+    assert least <= len(parts) <= least + 1
     assert sum(section(size * outline[part]).area for part in parts) == pytest.approx(
         section(size * outline).area, rel=1e-14
     )
