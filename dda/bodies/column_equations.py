@@ -88,7 +88,7 @@ class Equations:
         """
         w = 2 * np.pi * np.atleast_1d(np.asarray(frequencies, float))
         W2, S = chosen(scheme, frequencies, exact)
-        accelerations = W2 if exact or not scheme.averages else W2 * acceleration_share(scheme, w)
+        accelerations = W2 if exact else W2 * acceleration_share(scheme, w)
         elimination, scale = self.elimination()
         k = self.body.k
         loads = self.body.loads

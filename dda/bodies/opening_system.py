@@ -124,7 +124,6 @@ def opening_subdivided(
     cut = subdivided(locked, columns, rows, glue, pattern)
     tangent, normal, _ = base_directions(model.block, model.base)
     supports = [joint for joint in cut.joints if joint.second == FIXED]
-    supports.sort(key=lambda joint: float(tangent @ np.array(joint.start)))
     ends = [(joint.first, place) for joint in supports for place in (joint.start, joint.end)]
     contact = np.zeros((2, len(ends), len(cut.blocks), 6))
     for i, (number, place) in enumerate(ends):

@@ -467,8 +467,6 @@ def set_openings(march: March, length: Length, near: int) -> None:
     for k in range(2):
         if k >= near:
             work.q[k] = FAR
-            if m > 2:
-                work.q[2 + k] = 0.0
             continue
         corner = rolling.at[k]
         x, y = place(rolling.q, rolling.turn.end, rolling.xi[corner][0], rolling.xi[corner][1])

@@ -56,7 +56,7 @@ def find_in_band(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, w
             slack = 0.0
             for r in range(m):
                 slack = max(slack, ROUNDING * abs(force[r]))
-        wrong = 0
+        agree = True
         for r in range(m):
             state = tried[r]
             if state == INSIDE:
@@ -71,10 +71,10 @@ def find_in_band(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, w
                 if opens[r] == 0:
                     z[r] += compliance[r] * force[r]
             new = next_state(state, force[r], z[r], own[r] + compliance[r], lower[r], upper[r], opens[r], 0.0, slack)
-            if new != state and (wrong == 0 or solves <= laws.together):
+            if new != state and (agree or solves <= laws.together):
                 tried[r] = new
-                wrong += 1
-        if wrong == 0:
+                agree = False
+        if agree:
             break
         if solves == laws.most:
             return LIMIT, solves

@@ -152,7 +152,7 @@ def work_for(contacts: int, rows: int, banded: bool = False) -> Work:
     return Work(*vectors, *integers, *rest)
 
 
-def flexibility_for(rows: int, banded: bool = False) -> Flexibility:
+def flexibility_for(rows: int, banded: bool) -> Flexibility:
     """Return room for a flexibility."""
     shape = (2, rows) if banded else (rows, rows)
     return Flexibility(np.zeros(shape), np.zeros(shape), np.ones(1))

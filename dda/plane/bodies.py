@@ -154,7 +154,7 @@ def inertia_of(blocks: Blocks, i: int, e: Vector, poses: Poses) -> None:
 def inertia_forces(
     blocks: Blocks, i: int, p: Vector, a: Vector, step: float, poses: Poses, spin: Vector, out: Vector
 ) -> float:
-    """Write what a strained block adds to the equations of its strain modes, and (r', e') into `spin`.
+    """Add what a strained block adds to the equations of its strain modes; write (r', e') into `spin`.
 
     Returns its kinetic energy less that of the modes alone, p' p / 2 [J].
 
@@ -185,8 +185,6 @@ def inertia_forces(
     growth = 0.0
     for k in range(3):
         growth += 2 * pull_of(blocks, i, k, poses.e[i]) * spin[1 + k]
-    for m in range(3):
-        out[first + 3 + m] = 0.0
     for k in range(3):
         force = poses.gamma[i][k] * (turning + growth * omega) / J - blocks.gamma[i][k] * carried / (root * root)
         force += omega * omega * pull_of(blocks, i, k, poses.e[i])
@@ -240,8 +238,6 @@ def set_poses(blocks: Blocks, q: Matrix, D: Matrix, chords: Poses, ends: Poses) 
         chords.spin[i] = math.sin(half) / half if half != 0 else 1.0
         chords.stretch[i] = math.cos(half)
         ends.turn[i] = complex(math.cos(end), math.sin(end))
-        ends.spin[i] = 1.0
-        ends.stretch[i] = 1.0
         if blocks.modes[i] > RIGID:
             for k in range(3):
                 ends.e[i][k] = q[i][3 + k] + D[i][3 + k]

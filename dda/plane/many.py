@@ -161,17 +161,17 @@ def find_many(
             solves += spent
             if spent == 0:
                 return NONE, solves
-            if update_all(many, laws, after, work) == 0:
+            if update_all(many, laws, after, work):
                 refine(many, laws, length, after, work)
                 return FOUND, solves
     return NONE, solves
 
 
-def update_all(many: Many, laws: Laws, after: Rows, work: Work) -> int:
-    """Set all states that disagree with forces and openings by more than the slack; return how many do."""
+def update_all(many: Many, laws: Laws, after: Rows, work: Work) -> bool:
+    """Set all states that disagree with forces and openings by more than the slack; tell whether none does."""
     n = laws.contacts
     slack = many.slack
-    wrong = 0
+    agree = True
     for k in range(n):
         r = n + k
         c = laws.compliance[k]
@@ -186,8 +186,8 @@ def update_all(many: Many, laws: Laws, after: Rows, work: Work) -> int:
         elif state == INSIDE and laws.slips and not is_smooth(laws, k):
             work.tried[r] = along(laws, after, work, k, work.z[r], slack)
         if work.tried[k] != state or work.tried[r] != shear_state:
-            wrong += 1
-    return wrong
+            agree = False
+    return agree
 
 
 # ---- one solve -------------------------------------------------------------------------------------------------------
@@ -338,8 +338,7 @@ def add_forces(many: Many, laws: Laws, work: Work, after: Rows, whole: float) ->
             after.force[r] += work.tried[r] * (laws.friction[k] * N + whole * laws.upper[r])
         elif not is_smooth(laws, k):
             displacement = whole * work.q[r] + contact_displacement(many.x, many.blocks, many.places, r)
-            if many.kappa[k] != 0.0:
-                displacement += many.kappa[k] * (N - whole * many.normal[k])
+            displacement += many.kappa[k] * (N - whole * many.normal[k])
             after.force[r] -= displacement * work.beta[k] / laws.compliance[r]
 
 

@@ -65,7 +65,7 @@ def _grows(scheme: Scheme, omega: float) -> bool:
     k = omega * omega
     at_minus_one = 2 * (1 + gg) - k * (0.5 + gg * (2 * delta - 0.5) - 2 * alpha * (1 + gg))
     determinant = gg * (1 + (0.5 - delta) * k / (1 + alpha * k))
-    return not (at_minus_one > 0 and abs(determinant) <= 1 and k * (delta / 2 - alpha) < 1)
+    return not (at_minus_one > 0 and abs(determinant) <= 1)
 
 
 def blocked_modes(scheme: Scheme, frequencies: Array, rows: Array, steps: int) -> Array:

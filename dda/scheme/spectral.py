@@ -45,7 +45,7 @@ class Quadratic(NamedTuple):
     change: Array  # of it from one, which keeps them where it is near one
 
 
-def newmark_quadratic(omega: ArrayLike, alpha: Number, delta: Number, gg: Number = 1.0) -> Quadratic:
+def newmark_quadratic(omega: ArrayLike, alpha: Number, delta: Number, gg: Number) -> Quadratic:
     """Return the equation of the two eigenvalues."""
     X = _x(omega, alpha)
     grown = (0.5 - delta) * X

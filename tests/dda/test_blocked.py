@@ -1,5 +1,6 @@
 """Blocked histories: equal to stepped ones, as many digits, logarithmic work."""
 
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -7,9 +8,10 @@ import pytest
 from conftest import thinned
 from faults import seams
 
-from dda import Block, Contact, Material, Scheme, TwoBlockModel, modal_form, solve
+from dda import BaseMotion, Block, Contact, Load, Material, Scheme, TwoBlockModel, modal_form, named_scheme, solve
 from dda.bodies.locked_block import modal_histories
 from dda.scheme import blocked as blocks
+from dda.scheme.roots import roots
 
 COLUMNS = ("displacement", "contact_pressure")
 
@@ -47,15 +49,16 @@ def test_work_grows_with_the_logarithm(monkeypatch):
     assert squares == [17, 17]  # two modes, 2^17 > 1e5
 
 
-@pytest.mark.parametrize(
-    ("scheme", "reason"),
-    [
-        (Scheme(0.0, 0.5, 1.0, 1.0), "a mode grows"),
-        (Scheme(0.25, 0.4, 1.0, 1e-3), "a mode grows"),
-        (Scheme(0.0, 0.5, 1.0, 1.0, mass_damping=1.0), "a mode grows"),
-        (Scheme(0.5, 1.0, 1.0, 1e-30), "w dt is outside 1e-15 to 1e+15"),
-    ],
-)
-def test_what_cannot_be_blocked_is_stepped_and_says_so(scheme, reason):
-    assert f"stepped: {reason}" in solve(model(), scheme, 40).notes
-    assert "blocked" in solve(model(), Scheme(0.25, 0.5, 1.0, 1e3), 40).notes
+def test_what_grows_and_no_other_is_stepped_and_says_so():
+    weights = [(0.0, 0.5, 0.9), (0.1, 0.8, 0.6), (0.1, 0.4, 0.9), (0.2, 0.9, 0.0), (0.25, 0.4, 1.0), (0.3, 0.6, 1.0)]
+    schemes = [Scheme(*numbers, 1.0) for numbers in weights]
+    schemes += [Scheme(0.0, 0.5, 0.95, 1.0, "zero", 0.2), Scheme(0.1, 0.6, 1.0, 1.0, "zero", 0.01, 0.3)]
+    schemes += [named_scheme("leapfrog", step=1.0, gg=0.9), named_scheme("composite", step=1.0)]
+    for scheme, omega in product(schemes, [*np.linspace(0.02, 4.3, 50), 30.0]):
+        reason = "a mode grows" if abs(roots(scheme, omega)[0]) > 1 + 1e-9 else None
+        assert blocks.why_stepped(scheme, np.array([0.5 * omega, omega])) == reason, (scheme, omega)
+    assert "stepped: w dt is outside 1e-15 to 1e+15" in solve(model(), Scheme(0.5, 1.0, 1.0, 1e-30), 4).notes
+    moved = Load(motion=BaseMotion([0.0], [[0.0, 0.0]]))
+    average = Scheme(0.25, 0.5, 1.0, 1e3)
+    for load, note in ((Load(1.0), "blocked"), (Load(ramp=0.1), "in a ramp"), (moved, "the base moves")):
+        assert note in solve(replace(model(), load=load), average, 4).notes[-1]

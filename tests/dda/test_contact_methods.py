@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from conftest import thinned
 
 from dda import (
     Block,
@@ -16,36 +15,9 @@ from dda import (
     UnilateralOptions,
     solve_unilateral,
 )
-from validation.theory import stages
-from validation.theory.rebound import midpoints, rebounds, spring_steps
 
 MASS = 1.3 * 0.9 * 2350.0
-V = 0.7
-PHASES = midpoints(2)
 PAPER = UnilateralModel(Block.rectangle(2.0, 2.0, Material(2700.0, 1e9, 0.0)), Unilateral(1e9), 5e6)
-
-
-def average(dt, gg=1.0):
-    return Scheme(0.25, 0.5, gg, dt, "consistent")
-
-
-def rigid_rebound(scheme, omega, theta, zeta=0.0, rule="newmark", young=1e22, steps=None, **options):
-    """Return the speed after the impact of a rigid block over that before; its contact is one of stiffness 2p."""
-    dt = scheme.step
-    k = math.inf if math.isinf(omega) else MASS * (omega / dt) ** 2
-    damping = zeta * math.sqrt(k * MASS) if zeta else 0.0  # each of two corners: half of 2 zeta sqrt(k m)
-    law = Unilateral(k / 2, gap=(1 - theta) * V * dt, damping=damping)
-    model = UnilateralModel(Block.rectangle(1.3, 0.9, Material(2350.0, young, 0.0)), law, velocity=-V)
-    steps = steps or 110 + round(8 / omega)
-    result = solve_unilateral(model, scheme, steps, options=UnilateralOptions(rule, **options))
-    assert result.outcome == "completed"
-    return result.velocity[-1] / V
-
-
-def check_rebounds(scheme, advance, omega, tolerance=1e-6, **given):
-    expected = rebounds(advance, PHASES)
-    measured = [rigid_rebound(scheme, omega, float(theta), **given) for theta in PHASES]
-    assert measured == pytest.approx(expected, abs=tolerance)
 
 
 @pytest.mark.parametrize(("alpha", "delta"), [(0.25, 0.5), (9 / 16, 1.0)])
@@ -74,11 +46,3 @@ def test_what_a_pass_leaves_of_the_penetration(dt, rC):
     limited = solve_unilateral(model, scheme, 1, options=replace(options, pass_limit=2))
     assert limited.outcome == "pass limit exceeded" and len(limited.time) == 0
     assert limited.step_cuts.size == 0 and limited.notes[-1] == "pass limit exceeded at step 1"
-
-
-@pytest.mark.parametrize("omega", thinned([0.3, 4.0, 1.0, 1e3], 2))
-def test_a_rigid_block_rebounds_as_fast_as_it_falls_or_as_under_constant_acceleration(omega):
-    """Energy-conserving contact at every phase; Kane's force, which enters the velocity whole, as under (1/2, 1)."""
-    returned = [rigid_rebound(average(1e-3), omega, float(theta), rule="energy-conserving") for theta in PHASES]
-    assert returned == pytest.approx(np.ones(len(PHASES)), abs=1e-9)
-    check_rebounds(average(1e-3), spring_steps(stages.newmark(0.5, 1.0), omega), omega, rule="implicit")

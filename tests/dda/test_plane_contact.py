@@ -1,6 +1,7 @@
 """Blocks in the plane on contacts that a scene states: closed forms, invariants, accounts."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -19,7 +20,7 @@ from dda import (
 from dda.contact.rows import FOUND, INSIDE, LOWER, NONE, OUTCOMES
 from dda.march.step import steps_by
 from dda.plane import outcomes, solution, step
-from dda.plane.outcomes import contact_name
+from dda.plane.outcomes import contact_name, stated_contacts
 from dda.plane.solution import PlaneContact
 
 
@@ -52,16 +53,6 @@ def test_glue_closes_a_ring_of_blocks_and_carries_what_a_part_of_it_weighs(held)
     assert np.abs(moments / 2) == pytest.approx([2 * weight, weight / 2], rel=1e-4)
 
 
-def test_a_contact_with_a_strength_holds_up_to_it():
-    hung = PlaneBlock(rectangle(0, -1, 1, 1), 1000.0)
-    ceiling = PlaneBlock(rectangle(-1, 0, 3, 1), 1000.0, fixed=True)
-    for strength, falls in ((0.4, True), (1.2, False)):
-        springs = ContactSprings(1e8, 1e8, 0.0, cohesion=1e5, tension=strength * 1000.0 * GRAVITY)
-        contacts = [CornerOnEdge(0, corner, 1, 0, springs) for corner in (2, 3)]
-        result = solve_plane(PlaneModel([hung, ceiling], contacts, gravity=(0.0, -GRAVITY)), scheme(CONSTANT, 1e-3), 80)
-        assert bool(result.displacement[-1, 0, 1] < -1e-2) is falls and bool(np.all(result.state[-1] == 0)) is falls
-
-
 def test_a_driven_floor_gives_its_work_to_what_stands_on_it(held):
     time = np.linspace(0, 0.5, 51)
     motion = BaseMotion(time, np.column_stack([0.02 * np.sin(12 * time), 0.005 * (1 - np.cos(20 * time))]))
@@ -76,13 +67,13 @@ def test_a_driven_floor_gives_its_work_to_what_stands_on_it(held):
     held("driven floor", result)
 
 
-@pytest.mark.parametrize("young", thinned([math.inf, 1e8], 2))
+@pytest.mark.parametrize("young", thinned([1e8, math.inf], 2))
 def test_two_free_blocks_that_meet_off_centre_keep_their_momentum(young, held):
     """The edge belongs to a block that turns: its turn is part of every row."""
-    struck = PlaneBlock(rectangle(-1, -0.5, 2, 1), 2000.0, young, 0.2, spin=0.5)
+    struck = PlaneBlock([(-1, -0.5), (1, -0.5), (1, 0.44), (-1, 0.84)], 2000.0, young, 0.2, spin=0.5)
     corner = PlaneBlock([(0.7, 0.502), (1.3, 1.2), (0.2, 1.3)], 2000.0, young, 0.2, velocity=(0.2, -2.0))
     contacts = [CornerOnEdge(1, 0, 0, 2, ContactSprings(1e7, 4e6, 0.3))]
-    result = solve_plane(PlaneModel([struck, corner], contacts), scheme(CONSTANT, 3e-4), 130, compiled=False)
+    result = solve_plane(PlaneModel([struck, corner], contacts), scheme(CONSTANT, 6e-4), 50, compiled=False)
     held(f"two free blocks of {young}", result)
     assert result.normal.max() > 0 and not result.normal[-1].any()
     drift = np.ptp(result.momentum, axis=0)
@@ -130,4 +121,6 @@ def test_contacts_are_named_by_their_blocks():
     base = PlaneBlock(rectangle(0, -1, 1, 1), 1000.0, fixed=True, name="base")
     model = PlaneModel([base, PlaneBlock(rectangle(0, 0, 1, 1), 1000.0, name="upper")])
     assert contact_name(model, PlaneContact(1, 2, 0, 3)) == "corner 2 of upper on edge 3 of base"
-    assert contact_name(model, PlaneContact(1, -1, 0, 0)) == "glue of upper and base"
+    joined = replace(model, bonds=[EdgeBond(1, 0, (0, 0), (1, 0), 1.0, 1.0)])
+    assert stated_contacts(joined) == [PlaneContact(1, -1, 0, -1)] * 2
+    assert contact_name(model, PlaneContact(1, -1, 0, -1)) == "glue of upper and base"

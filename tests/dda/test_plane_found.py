@@ -77,16 +77,16 @@ def test_nothing_is_gained_beside_a_corner(name):
     assert turned.velocity[-1, -1, :3] == pytest.approx(expected, abs=1e-9)
 
 
-def pile(count, seed):
-    """Return polygons above the floor of a box."""
-    random = np.random.default_rng(seed)
-    width = int(np.ceil(np.sqrt(count)))
+def pile():
+    """Return a hundred polygons above the floor of a box."""
+    random = np.random.default_rng(3)
+    width = 10
     blocks = [
         fixed(box(-1, -1, 1.3 * width + 2, 1)),
         fixed(box(-1, 0, 1, 3 * width)),
         fixed(box(1.3 * width, 0, 1, 3 * width)),
     ]
-    for number in range(count):
+    for number in range(100):
         n = random.integers(3, 8)
         angles = 2 * np.pi / n * (np.arange(n) + np.sort(random.uniform(0, 0.8, n)))
         ring = 0.5 * np.column_stack([np.cos(angles), np.sin(angles)])
@@ -95,36 +95,26 @@ def pile(count, seed):
     return blocks
 
 
-# of few the rest comes after what a test may take
-@pytest.mark.parametrize(
-    ("count", "steps", "least", "at_rest"),
-    [
-        pytest.param(5, 120, 2, False, marks=pytest.mark.long),
-        pytest.param(100, 3000, 101, True, marks=pytest.mark.long),
-    ],
-    ids=["few", "many"],
-)
-def test_polygons_dropped_in_a_box_keep_their_accounts(count, steps, least, at_rest):
+@pytest.mark.long
+def test_polygons_dropped_in_a_box_keep_their_accounts():
     stiffness = 1e8
-    blocks = pile(count, 3)
-    compiled = count > 10
+    blocks = pile()
     springs = ContactSprings(stiffness, 4e7, friction=0.5)
-    result = history(model_of(blocks, springs), steps, gg=0.999, every=10 if compiled else 1, compiled=compiled)
+    result = history(model_of(blocks, springs), 3000, gg=0.999, every=10, compiled=True)
     energy = own_energy(result)
     given = result.energy["kinetic"][0] - np.min(result.energy["load"])
     assert np.max(np.diff(energy)) <= 1e-12 * given
     assert np.max(np.abs(result.energy["balance"])) < 1e-10 * given
-    assert len(result.contacts) >= least
+    assert len(result.contacts) > 100
     masses = np.array([block.density * block.block.section.area for block in blocks[3:]])
     speed = np.max(np.hypot(*np.moveaxis(result.velocity[..., :2], -1, 0)))
     weight = 9.81 * np.sum(masses)
     deepest = weight / stiffness + speed * np.sqrt(np.max(masses) / stiffness)  # of weight and of impact
     assert np.nanmin(np.where(result.normal > 0, result.gap, 0.0)) > -deepest
-    wide = 1.3 * np.ceil(np.sqrt(count))
+    wide = 13.0
     x, y = np.moveaxis(result.centroid[:, 3:], -1, 0)
     assert np.all((x > 0) & (x < wide) & (y > 0))  # nothing is lost
-    if at_rest:
-        assert result.energy["kinetic"][-1] < 1e-5 * np.max(result.energy["kinetic"])
+    assert result.energy["kinetic"][-1] < 1e-5 * np.max(result.energy["kinetic"])
 
 
 def crowd():
@@ -140,7 +130,7 @@ def crowd():
     ]
     rough = ContactSprings(2e8, 1e8, 0.4)
     strong = ContactSprings(3e8, 2e8, 0.2, cohesion=3e3, tension=2e3)
-    laws = {(1, 0): ContactSprings(1e8), (3, 0): strong, (5, 0): ContactSprings(1e8, 5e7), (5, 1): strong}
+    laws = {(3, 1): None, (1, 0): ContactSprings(1e8), (3, 0): strong, (5, 0): ContactSprings(1e8, 5e7), (5, 1): strong}
     loads = [
         PlaneLoad(2, (3e4, -1e4), edge=((1.5, 1.0005), (0.2, 1.0005)), ramp=0.02),
         PlaneLoad(4, (2e3, 500.0)),
@@ -156,14 +146,14 @@ def crowd():
 @pytest.mark.parametrize(
     ("scheme", "dense"),
     [
-        (Scheme(0.25, 0.5, 0.98, 1e-3, "consistent"), solution.DENSE),
-        (named_scheme("composite", step=1e-3, gg=0.99), 0),
+        (Scheme(0.3025, 0.6, 0.98, 2e-3, "consistent"), solution.DENSE),
+        (named_scheme("composite", step=2e-3, gg=0.99), 0),
     ],
     ids=["few", "many"],
 )
 def test_a_crowd_of_blocks_keeps_its_accounts_and_moves_as_it_did(scheme, dense, monkeypatch, held):
     monkeypatch.setattr(solution, "DENSE", dense)
-    result = solve_plane(crowd(), scheme, 8, every=2, compiled=False)
+    result = solve_plane(crowd(), scheme, 7, every=3, compiled=False)
     assert result.outcome == "completed" and set(result.state.ravel()) == {-2, 0, 1, 2}
     assert np.abs(result.energy["balance"]).max() < 1e-12 * result.energy["kinetic"].max()
     held(f"crowd by {scheme.name}", result)

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import replace
-from types import SimpleNamespace
 from unittest.mock import patch
 
 import numpy as np
@@ -74,16 +73,3 @@ def test_corners_that_were_not_thought_to_touch_are_found_by_the_step(held):
         blind = solve_unilateral(rocking, scheme, 80)
     held("rocking", sound)
     assert np.max(np.abs(blind.gap - sound.gap)) < 1e-9 and np.count_nonzero(np.diff(sound.states)) > 1
-
-
-HEIGHTS = [0.5, 0.1, 0.3, 0.2]  # m, of the corners
-
-
-@pytest.mark.parametrize(
-    ("heights", "reach", "corners"),
-    [(HEIGHTS, 0.4, [1, 3]), (HEIGHTS[::-1], 0.4, [0, 2]), ([0.1, 0.5, 0.3, 0.2], 0.4, [0, 3]), (HEIGHTS, 0.15, [1])],
-)
-def test_the_two_lowest_corners_may_touch(heights, reach, corners):
-    rolling = SimpleNamespace(near=heights, at=[-1, -1])
-    assert step.nearest(rolling, reach) == len(corners)
-    assert rolling.at[: len(corners)] == corners

@@ -46,13 +46,14 @@ def test_it_agrees_with_the_robust_form_where_poisson_is_zero(start, shape):
 
 def test_where_it_does_not_apply_it_says_why():
     scheme = Scheme(0.5, 1, 1, 1e-3)
-    trapezium = TwoBlockModel(Block([[0, 0], [3, 0], [2, 1], [1, 1]], Material(1.0, 1.0, 0.0)), Contact(1.0), 1.0)
-    sideways = TwoBlockModel(Block.rectangle(2, 2, Material(1.0, 1.0, 0.0)), Contact(1.0), 1.0, base=0, top=1)
-    rolled = TwoBlockModel(Block([[0, 2], [0, 0], [1, 0], [1, 2]], Material(1.0, 1.0, 0.0)), Contact(1.0), 1.0, 1, 3)
-    hanging = TwoBlockModel(Block.rectangle(2, 2, Material(1.0, 1.0, 0.0)), Contact(1.0), 1.0, base=2, top=0)
-    assert textbook_applicable(square(1.0), scheme) is None
+    rock = Material(1.0, 1.0, 0.0)
+    trapezium = TwoBlockModel(Block([[0, 0], [3, 0], [2, 1], [0, 1]], rock), Contact(1.0), 1.0)
+    sideways = TwoBlockModel(Block.rectangle(2, 2, rock), Contact(1.0), 1.0, base=0, top=1)
+    rolled = TwoBlockModel(Block([[0, 2], [0, 0], [1, 0], [1, 2]], rock), Contact(1.0), 1.0, 1, 3)
+    hanging = TwoBlockModel(Block.rectangle(2, 2, rock), Contact(1.0), 1.0, base=2, top=0)
     assert textbook_applicable(rolled, scheme) is None
     assert "upright rectangle" in textbook_applicable(trapezium, scheme)
     assert "upright rectangle" in textbook_applicable(hanging, scheme)
     assert "opposite" in textbook_applicable(sideways, scheme)
     assert "alpha" in textbook_applicable(square(1.0), Scheme(0.0, 0.5, 1, 1e-3))
+    assert "viscous" in textbook_applicable(square(1.0), Scheme(0.5, 1, 1, 1e-3, "zero", 1.0))

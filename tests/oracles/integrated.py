@@ -128,7 +128,7 @@ class Integration:
         return np.concatenate([y[n:], np.linalg.solve(self.M, force)])
 
 
-# ---- blocks ----------------------------------------------------------------------------------------------------------
+# ---- blocks ----
 
 
 def random_problem(seed):
@@ -218,7 +218,7 @@ def integrated_block(problem, states, end):
     return [(t, "MN"[c], state) for t, c, state in found], y
 
 
-# ---- columns ---------------------------------------------------------------------------------------------------------
+# ---- columns ----
 
 
 @dataclass(frozen=True)
