@@ -116,7 +116,7 @@ def opening_block(model: LoadedBlock, velocity: float = 0.0, full: bool = False)
     )
 
 
-def start_of(block: OpeningBlock, scheme: Scheme, gap: float, velocity: float, at_once: bool) -> State:
+def start_of(block: OpeningBlock, scheme: Scheme, gap: float, velocity: float, at_once: bool = False) -> State:
     """Return the state at t = 0: unstrained, without contact force, the corners at the starting gap.
 
     Parameters
