@@ -216,7 +216,8 @@ def test_another_numba_compiles_in_its_own_way(fresh, monkeypatch):
 @pytest.mark.parametrize("name", ["NUMBA_CACHE_DIR", "XDG_CACHE_HOME"])
 def test_a_directory_that_cannot_be_written_is_none(monkeypatch, tmp_path, name):
     (tmp_path / "file").write_text("")
-    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    for other in ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME"):
+        monkeypatch.delenv(other, raising=False)
     monkeypatch.setenv(name, str(tmp_path / "file" / "below"))
     assert compiled.cache_directory.__wrapped__() is None
     monkeypatch.setenv(name, str(tmp_path / "new"))
