@@ -41,7 +41,7 @@ def runs(finished_cases: Path, pytestconfig: pytest.Config) -> GateRuns:
     """Return the cases run in this session, filled as gates ask for them, by the suite's own solvers or a user's."""
     user = pytestconfig.getoption("--dda-solver", None)
     results = Results(finished_cases)
-    return GateRuns(results, studies=judged_studies()) if user is None else Session(user, results)
+    return GateRuns(results, judged_studies()) if user is None else Session(user, results)
 
 
 @pytest.mark.validation

@@ -111,3 +111,5 @@ def test_the_first_contact_is_timed_between_rows():
 
     assert seconds(1.0, -1.0, -1.0, 3.0, -1.0) == pytest.approx(1.75)  # from 1.5 to 3.25
     assert seconds(1.0, 0.5, 0.1) is seconds(1.0, -1.0, -2.0) is None
+    uneven = History(np.array([1.0, 2.0, 4.0, 8.0]), {})
+    assert measures.contact_time(uneven, np.array([1.0, -1.0, -1.0, 3.0])) == pytest.approx(3.5)  # from 1.5 to 5

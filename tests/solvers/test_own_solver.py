@@ -23,8 +23,10 @@ from validation.scenes.scene import load_scene
 from validation.solvers import user
 from validation.solvers.processes.worker import WorkerHangs
 from validation.solvers.registry import get_solver
+from validation.suite.folders import get_study
 from validation.suite.own_solver import block as block_module
 from validation.suite.own_solver import block_data, gates
+from validation.suite.own_solver import session as session_module
 from validation.suite.own_solver.block import block, first
 from validation.suite.own_solver.history import AT_REST, root
 from validation.suite.own_solver.session import GateReport, Session
@@ -130,6 +132,13 @@ def test_a_solver_of_the_suite_and_one_that_does_not_repeat_are_told(
     assert {0.01 < t.apart < 0.1 for t in told} == {solver == "copies:noisy"}
     headings = [text.partition(":")[0].strip() for text in block(told)]
     assert [heading for heading in WARNINGS if heading in headings] == warned
+
+
+def test_the_suites_own_dda_passes_in_its_own_place(tmp_path, monkeypatch):
+    gate = next(gate for gate in get_study("core").gates() if gate.metric == "displacement.static")
+    monkeypatch.setattr(gates, "applying", lambda: {gate.id: ("core", gate)})
+    monkeypatch.setattr(session_module, "judged_studies", lambda: ["core"])
+    assert Session("dda", Results(tmp_path)).judge(gate.id)[1].status == "PASS"
 
 
 AUTHORS = TABLES["authors"]

@@ -130,5 +130,7 @@ def contact_time(history: History, gap: Array) -> float | None:
     opened = np.flatnonzero(~closed[first:])
     if first == 0 or not len(opened):
         return None
-    start, end = (row + float(gap[row - 1] / (gap[row - 1] - gap[row])) for row in (first, first + int(opened[0])))
-    return (end - start) * float(history.time[1] - history.time[0])
+    rows = np.array([first, first + int(opened[0])])
+    places = rows - 1 + gap[rows - 1] / (gap[rows - 1] - gap[rows])
+    start, end = np.interp(places, np.arange(len(gap)), history.time)
+    return float(end - start)

@@ -22,6 +22,7 @@ from validation.solvers.files import Outside
 from validation.solvers.foreign import SAME_AS
 from validation.solvers.registry import get_solver
 from validation.solvers.user import PARTS, UserSolver
+from validation.suite.folders import judged_studies
 from validation.suite.matrix import JUDGED, CaseInPlace
 from validation.suite.own_solver import gates, history
 
@@ -61,7 +62,7 @@ class GateRuns:
     Bands are formulas: those of a study that is not among `studies` are not computed.
     """
 
-    def __init__(self, results: Results, solver: str = JUDGED, studies: Iterable[str] = ()) -> None:
+    def __init__(self, results: Results, studies: Iterable[str], solver: str = JUDGED) -> None:
         self.results = results
         self.solver = solver  # which answers in the place of `JUDGED`
         self.studies = tuple(studies)
@@ -99,7 +100,7 @@ class Session(GateRuns):
     """A user's solver in the place of `dda`, and what each gate tells of it."""
 
     def __init__(self, user: str, results: Results) -> None:
-        super().__init__(results, user)
+        super().__init__(results, judged_studies(), user)
         self._differences: dict[str, tuple[str, float]] = {}  # of the scenes that were run twice
         self._same: dict[tuple[str, str], bool] = {}  # by scene and solver of the suite
 
