@@ -116,7 +116,8 @@ class Equations:
         scale = float(np.max(stiffness(self.column) / inertia(self.column)))
         n = len(self.blocks.root)
         k = self.body.k / scale
-        k[1::2] = np.where(self.blocks.half > 0, k[1::2], 1.0)  # of a block without stretch any, which nothing reaches
+        if self.blocks.modes == 2:  # of a block without stretch any stiffness, which nothing reaches
+            k[1::2] = np.where(self.blocks.half > 0, k[1::2], 1.0)
         on_half_space = np.eye(1, n)[0] * (not self.column.rests_on_base)
         dashpots = diags_array(scale * on_half_space / (self.blocks.impedance or 1.0))
         openings = self.B, diags_array(scale * compliances(self.column))
@@ -125,7 +126,7 @@ class Equations:
         )
         K = block_array([[diags_array(k), -self.B.T], [still[0], still[1] + dashpots]], format="csr")
         C = block_array([[diags_array(0 * k), None], [moving[0], moving[1]]], format="csr")
-        M = diags_array(np.repeat([1 / scale, 0.0], [2 * n, n]), format="csr")
+        M = diags_array(np.repeat([1 / scale, 0.0], [len(k), n]), format="csr")
         return Elimination(K, M, C), scale
 
     def largest(self) -> float:

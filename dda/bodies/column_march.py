@@ -110,33 +110,36 @@ def blocks_of(column: Column, observed: Observed) -> Blocks:
         root[0] /= math.sqrt(3)
         half[0] = 0.0
     gaps = np.array([spring.gap for spring in springs_of(column)])
-    return Blocks(root, half, gaps, base, float(masses[0]), column.gravity, impedance(column), observed)
+    modes = 2 if half.any() else 1
+    return Blocks(root, half, gaps, modes, base, float(masses[0]), column.gravity, impedance(column), observed)
 
 
 def body_of(column: Column, blocks: Blocks) -> Body:
     """Return the column in its modes; row 0 has no weights where nothing is below."""
     n = len(blocks.root)
-    width = min(4, 2 * n)
+    modes = blocks.modes
+    width = min(2 * modes, modes * n)
     mean = 1 / blocks.root
-    k = np.zeros(2 * n)
-    k[1::2] = np.where(blocks.half > 0, stiffness(column) / (blocks.root * blocks.root), 0.0)
+    k = np.zeros(modes * n)
+    k[modes - 1 :: modes] = np.where(blocks.half > 0, stiffness(column) / (blocks.root * blocks.root), 0.0)
     weight = np.zeros((n, width))
-    weight[0, :2] = mean[0], -blocks.half[0]
-    weight[1:] = np.column_stack([-mean[:-1], -blocks.half[:-1], mean[1:], -blocks.half[1:]])[:, :width]
+    weight[0, :modes] = (mean[0], -blocks.half[0])[:modes]
+    tops, feet = ((sign * mean, -blocks.half)[:modes] for sign in (-1, 1))
+    weight[1:] = np.column_stack([*(part[:-1] for part in tops), *(part[1:] for part in feet)])[:, :width]
     ground = np.zeros((n, 2))
     ground[0, 1] = column.rests_on_base
     if blocks.base in (ABSENT, CARRIED):
         weight[0] = 0.0
     if blocks.base == CARRIED:
-        weight[1:2, :2] = 0.0
+        weight[1:2, :modes] = 0.0
         ground[:2, 1] = np.arange(min(n, 2))
-    loads = np.zeros((2 if blocks.base in (ROW, ABSENT) else 4, 2 * n))  # the motion below is no modal load
-    loads[0, ::2] = -column.gravity * blocks.root
-    loads[1, -2:] = -mean[-1], -blocks.half[-1]
+    loads = np.zeros((2 if blocks.base in (ROW, ABSENT) else 4, modes * n))  # the motion below is no modal load
+    loads[0, ::modes] = -column.gravity * blocks.root
+    loads[1, -modes:] = (-mean[-1], -blocks.half[-1])[:modes]
     if blocks.base == WELDED:
         loads[0, 0] /= 2 * blocks.root[0] * blocks.root[0] / blocks.mass
         loads[3, 0] = -blocks.mass / 6 * mean[0]
-    first = np.maximum(2 * np.arange(n) - 2, 0)
+    first = np.maximum(modes * (np.arange(n) - 1), 0)
     return Body(k, loads, np.zeros(len(loads)), first, weight, ground, np.ones(len(k)))
 
 
@@ -189,7 +192,7 @@ def start_of(column: Column, scheme: Scheme, drive: Drive, settled: bool, march:
     rigid = laws.compliance == 0
     rigid[0] &= column.rests_on_base
     speed = np.zeros(len(body.k))
-    speed[::2] = blocks.root * column.velocities
+    speed[:: blocks.modes] = blocks.root * column.velocities
     base_speed = float(drive.velocity[0]) if column.rests_on_base else 0.0
     welds = rigid & ~opens & np.isinf(laws.upper)  # their blocks get a common velocity at once
     speed += B.T @ rigid_forces(march, speed, base_speed, welds, np.zeros(len(opens)))
@@ -203,7 +206,7 @@ def start_of(column: Column, scheme: Scheme, drive: Drive, settled: bool, march:
         opening = -force * laws.compliance
         rigid[:] = False
     elif blocks.base == HALF_SPACE:
-        force[0] = blocks.impedance * (2 * drive.velocity[0] - body.weight[0, :2] @ speed[:2])
+        force[0] = blocks.impedance * (2 * drive.velocity[0] - body.weight[0, : blocks.modes] @ speed[: blocks.modes])
     own = march.room.end[2:] @ body.loads - body.k * z
     a = np.zeros(len(z))
     if scheme.start == "consistent":
@@ -284,7 +287,7 @@ def static(column: Column, blocks: Blocks, laws: Laws, base: float) -> ArrayPair
         carried[0] = (carried[0] + carried[1]) / 2 if blocks.base == WELDED else 0.0
         stretch[0] = 0.0
     tops = base + np.cumsum(stretch - carried[:-1] * laws.compliance - blocks.gap)
-    z = np.zeros(2 * len(weights))
-    z[::2] = blocks.root * (tops - stretch / 2)
-    z[1::2] = blocks.root / math.sqrt(12) * stretch
+    z = np.zeros(blocks.modes * len(weights))
+    z[blocks.modes - 1 :: blocks.modes] = blocks.root / math.sqrt(12) * stretch
+    z[:: blocks.modes] = blocks.root * (tops - stretch / 2)  # the last as well where there is no other
     return z, carried[:-1]

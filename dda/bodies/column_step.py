@@ -1,13 +1,13 @@
 r"""Steps of a column: its blocks in their modes, what joins them as rows of contact.
 
 A block of mass m per area and stiffness K = E/h has a mean displacement u and a stretch e = top - foot, in which its
-inertia m, m/12 and its stiffness 0, K are diagonal; a rigid block has a stretch that nothing moves. The modes of block
-i are 2i and 2i + 1,
+inertia m, m/12 and its stiffness 0, K are diagonal. The modes of block i are 2i and 2i + 1,
 
     z = sqrt(m) u,    sqrt(m/12) e        u = z_2i / sqrt(m),    e/2 = sqrt(3/m) z_2i+1,
 
 and row i is the contact between its foot and the top of the block below, so that every row feels four modes and its
-neighbours alone (`Laws.banded`). Contacts have N >= 0, or -s <= N <= s in shear; glue has no bounds, welded faces are
+neighbours alone (`Laws.banded`). A rigid block has a stretch that nothing moves; where no block has any, the mean is
+the only mode of each. Contacts have N >= 0, or -s <= N <= s in shear; glue has no bounds, welded faces are
 rigid besides. All are one problem, the least of a strictly convex function of N within bounds, which has exactly one
 solution: no step is ever cut. Where touching blocks are stiff against a step a closing spreads by one contact a solve;
 N + 1 solves are the most known of contacts that open, 2 N + 1 of those that slip. Where states changed
@@ -93,6 +93,7 @@ class Blocks(NamedTuple):
     root: Vector  # sqrt(m) [kg^1/2 / m]
     half: Vector  # half the stretch by its mode, sqrt(3/m); 0 of a rigid block
     gap: Vector  # gaps at t = 0 [m]
+    modes: int  # of each block, the stretch last
     base: int  # what is below
     mass: float  # of the lowest block [kg/m^2]
     gravity: float  # [m/s^2]
@@ -195,9 +196,9 @@ def make_linear_stage(
     if blocks.base == SPRUNG:
         end_surface(march, stage, length, after)
     lowest, below = lowest_face(march, after)
-    half = blocks.half[lowest:] * after.z[1 + 2 * lowest :: 2]
+    half = blocks.half[lowest:] * after.z[blocks.modes * (lowest + 1) - 1 :: blocks.modes]
     tops = below + np.cumsum((after.rows.opening - blocks.gap + after.path)[lowest:] + 2 * half)
-    after.z[2 * lowest :: 2] = blocks.root[lowest:] * (tops - half)
+    after.z[blocks.modes * lowest :: blocks.modes] = blocks.root[lowest:] * (tops - half)
     return FOUND, 1
 
 
@@ -224,13 +225,14 @@ def lowest_face(march: March, state: AnyState) -> tuple[int, float]:
 def place_blocks(march: March, state: AnyState) -> None:
     """Write the means from gaps, slips and stretches, above the base or the lowest block."""
     blocks = march.method
+    modes = blocks.modes
     rows = state.rows
     z = state.z
     lowest, below = lowest_face(march, state)
     for i in range(lowest, len(rows.state)):
-        half = blocks.half[i] * z[2 * i + 1]
+        half = blocks.half[i] * z[modes * (i + 1) - 1]
         mean = below + (rows.opening[i] - blocks.gap[i]) + state.path[i] + half
-        z[2 * i] = blocks.root[i] * mean
+        z[modes * i] = blocks.root[i] * mean
         below = mean + half
 
 
@@ -279,7 +281,7 @@ def free_half_space(march: March, stage: StageRoom, length: Length, before: AnyS
     numbers = stage.numbers
     h = length.numbers[2]
     speed = 0.0
-    for i in range(2):
+    for i in range(march.method.modes):
         speed += body.weight[0][i] * free_velocity(march, stage, length, before, i) / h
     weight = weight_of_welds(length)
     own = weight / (numbers.delta * (1 - numbers.af) / (1 - numbers.am) * h)
@@ -331,12 +333,12 @@ def known_force(march: March, r: int) -> float:
 
 def of_top(blocks: Blocks, x: Vector, i: int) -> Any:
     """Return what modal values make at the top of a block."""
-    return x[2 * i] / blocks.root[i] + blocks.half[i] * x[2 * i + 1]
+    return x[blocks.modes * i] / blocks.root[i] + blocks.half[i] * x[blocks.modes * (i + 1) - 1]
 
 
 def of_foot(blocks: Blocks, x: Vector) -> float:
     """Return what modal values make at the foot of the lowest block."""
-    return float(x[0] / blocks.root[0] - blocks.half[0] * x[1])
+    return float(x[0] / blocks.root[0] - blocks.half[0] * x[blocks.modes - 1])
 
 
 def force_of_base(march: March, state: AnyState, base: Vector) -> float:
@@ -412,12 +414,14 @@ def keep_observed(march: March, state: AnyState, kept: Matrix, number: int) -> b
         i = observed.place[k]
         lower = observed.lower[k]
         upper = observed.upper[k]
+        mean = blocks.modes * i
+        stretch = mean + blocks.modes - 1
         on_base = i == 0 and blocks.base >= WELDED
         if kind == MODES:
-            value = lower * state.z[2 * i] + upper * (room.end[1] if on_base else state.z[2 * i + 1])
+            value = lower * state.z[mean] + upper * (room.end[1] if on_base else state.z[stretch])
         elif kind == RATES:
-            value = lower * (discount * state.p[2 * i] + lag * state.a[2 * i]) / march.scheme.step
-            rate = (discount * state.p[2 * i + 1] + lag * state.a[2 * i + 1]) / march.scheme.step
+            value = lower * (discount * state.p[mean] + lag * state.a[mean]) / march.scheme.step
+            rate = (discount * state.p[stretch] + lag * state.a[stretch]) / march.scheme.step
             value += upper * (room.end[VELOCITY] if on_base else rate)
         elif kind == FOOT:
             value = force_of_base(march, state, room.end)
@@ -431,10 +435,10 @@ def keep_observed(march: March, state: AnyState, kept: Matrix, number: int) -> b
     row[columns + SWITCHES] = march.tally[0]
     march.tally[0] = 0.0
     if len(row) > columns + 1:
-        for i in range(2 * n):
+        for i in range(len(room.p)):
             room.p[i] = discount * state.p[i] + lag * state.a[i]
         keep_record(march, state, row, columns)
-    return math.isfinite(state.z[2 * n - 2])  # to which all others add
+    return math.isfinite(state.z[len(state.z) - blocks.modes])  # to which all others add
 
 
 def keep_record(march: March, state: AnyState, row: Vector, columns: int) -> None:
@@ -461,9 +465,10 @@ def keep_record(march: March, state: AnyState, row: Vector, columns: int) -> Non
             momentum += step * blocks.mass * foot / 3
             moving += blocks.mass / 6 * foot * foot
     for i in range(len(rows.state)):
-        stretch = state.z[2 * i + 1]
-        strained += march.body.k[2 * i + 1] * stretch * stretch
-        momentum += blocks.root[i] * march.room.p[2 * i]
+        mean = blocks.modes * i
+        last = mean + blocks.modes - 1
+        strained += march.body.k[last] * state.z[last] * state.z[last]
+        momentum += blocks.root[i] * march.room.p[mean]
         energy = laws.compliance[i] * rows.force[i] * rows.force[i]
         if i == 0 and blocks.base == WELDED:
             strained += energy
