@@ -22,7 +22,7 @@ from dda.bodies.column_step import (
 )
 from dda.contact.band import find_in_band
 from dda.contact.rows import INSIDE, LOWER, Laws, flexibility_for, rows_of
-from dda.march.step import Body, Course, Length, March, moved_row, write_flexibility
+from dda.march.step import Body, Course, March, length_for, moved_row, write_flexibility
 from dda.model.arrays import Array, ArrayPair
 from dda.scheme.newmark import Scheme, late_momentum
 
@@ -126,13 +126,12 @@ def body_of(column: Column, blocks: Blocks) -> Body:
     weight[0, :modes] = (mean[0], -blocks.half[0])[:modes]
     tops, feet = ((sign * mean, -blocks.half)[:modes] for sign in (-1, 1))
     weight[1:] = np.column_stack([*(part[:-1] for part in tops), *(part[1:] for part in feet)])[:, :width]
-    ground = np.zeros((n, 2))
-    ground[0, 1] = column.rests_on_base
+    ground = np.array([(0.0, float(column.rests_on_base))])
     if blocks.base in (ABSENT, CARRIED):
         weight[0] = 0.0
     if blocks.base == CARRIED:
         weight[1:2, :modes] = 0.0
-        ground[:2, 1] = np.arange(min(n, 2))
+        ground = np.array([(0.0, 0.0), (0.0, 1.0)])[:n]
     loads = np.zeros((2 if blocks.base in (ROW, ABSENT) else 4, modes * n))  # the motion below is no modal load
     loads[0, ::modes] = -column.gravity * blocks.root
     loads[1, -modes:] = (-mean[-1], -blocks.half[-1])[:modes]
@@ -196,7 +195,8 @@ def start_of(column: Column, scheme: Scheme, drive: Drive, settled: bool, march:
     base_speed = float(drive.velocity[0]) if column.rests_on_base else 0.0
     welds = rigid & ~opens & np.isinf(laws.upper)  # their blocks get a common velocity at once
     speed += B.T @ rigid_forces(march, speed, base_speed, welds, np.zeros(len(opens)))
-    opening = blocks.gap - body.ground[:, 1] * drive.displacement[0]
+    opening = blocks.gap.copy()
+    opening[: len(body.ground)] -= body.ground[:, 1] * drive.displacement[0]
     # springs have the forces of the gaps; rigid contacts, and welds, have none before the accelerations are known
     spring = laws.compliance > 0
     force = np.clip(np.where(spring, -opening / np.where(spring, laws.compliance, 1.0), 0.0), laws.lower, laws.upper)
@@ -263,7 +263,7 @@ def rigid_forces(march: March, rates: Array, base: float, unknown: Array, force:
         opens=np.where(unknown, march.laws.opens, 0),
         most=0,
     )
-    length = Length(np.zeros(4), np.ones(len(rates)), flexibility_for(n, True))
+    length = length_for(len(rates), flexibility_for(n, True))
     write_flexibility(march, 1.0, length)
     march.work.q[:] = row_rates(march, rates, base)
     after = rows_of(force, unknown)
@@ -274,8 +274,9 @@ def rigid_forces(march: March, rates: Array, base: float, unknown: Array, force:
 def row_rates(march: March, rates: Array, base: float) -> Array:
     """Return how fast each row opens or slips, (rows,), for velocities or accelerations of the modes."""
     # no product of a library, whose fused sums tear apart blocks that fall alike
-    moved = [moved_row(march.body, r, rates) for r in range(len(march.body.first))]
-    return np.asarray(np.array(moved) - march.body.ground[:, 1] * base)
+    moved = np.array([moved_row(march.body, r, rates) for r in range(len(march.body.first))])
+    moved[: len(march.body.ground)] -= march.body.ground[:, 1] * base
+    return moved
 
 
 def static(column: Column, blocks: Blocks, laws: Laws, base: float) -> ArrayPair:

@@ -51,7 +51,6 @@ from dda.march.step import (
     March,
     Part,
     StageRoom,
-    begin_step,
     coupling,
     end_modes,
     end_paths,
@@ -65,7 +64,7 @@ from dda.march.step import (
     push_modes,
     steps_by,
 )
-from dda.scheme.stage import inertia_force, predictor, velocity_corrector
+from dda.scheme.stage import predictor, velocity_corrector
 
 SWEEPS = 4  # solves for each contact with all states updated at once
 ROW, ABSENT, HALF_SPACE, SPRUNG = range(4)  # what is below the lowest block; SPRUNG: a spring and a half-space
@@ -130,22 +129,22 @@ def make_column_stage(
     rows = after.rows
     length = length_of(march, stage, part.ratio)
     prescribe(march, course, stage, part)
-    begin_step(march, start, length)
-    free_modes(march, stage, length, before)
+    free_modes(march, length, start, before)
     free_rows(march, before)
     hold_base(march, stage, length, start, before, after)
     outcome, solves = find_in_band(march.laws, before.rows, length.flexible, rows, work)
     if outcome != FOUND:
         return outcome, solves
     push_modes(march, rows.force)
-    end_modes(march, stage, length, before, after)
+    end_modes(march, length, start, before, after)
     if march.method.base == SPRUNG:
         end_surface(march, stage, length, after)
     end_paths(march, length.flexible, before, after)
     place_blocks(march, after)
-    for r in range(len(rows.state)):
-        if rows.state[r] != before.rows.state[r]:
-            march.tally[0] += 1
+    if solves > 1:
+        for r in range(len(rows.state)):
+            if rows.state[r] != before.rows.state[r]:
+                march.tally[0] += 1
     return outcome, solves
 
 
@@ -167,22 +166,17 @@ def make_linear_stage(
     body = march.body
     room = march.room
     blocks = march.method
-    numbers = stage.numbers
     length = stage.whole
-    h2 = length.numbers[2] * length.numbers[2]
     instant = int(part.begun) * march.scheme.stages + (march.scheme.stages if stage is march.last else 1)
-    room.end[:] = course.value[instant]  # whose instants are the ends of the stages
-    room.p[:] = length.numbers[1] * start.p
-    room.a[:] = start.a
-    room.R[:] = start.R
+    room.start[:] = course.value[instant - 1]  # whose instants are the ends of the stages
+    room.end[:] = course.value[instant]
     room.load[:] = room.end[2:] @ body.loads
-    held = inertia_force(numbers, h2 * (room.load - body.k * before.z), room.R, room.a)
-    room.x[:] = length.inverse * (predictor(numbers, room.p, room.a, before.p, before.a) + numbers.alpha * held)
+    free = length.free
+    moving = free[0] * start.p + free[1] * start.a + free[2] * start.R + free[3] * before.p + free[4] * before.a
+    room.x[:] = length.inverse * (moving + free[5] * (room.load - body.k * before.z))
     modes = body.first[:, None] + np.arange(body.weight.shape[1])  # that each row feels
-    moved = np.einsum("rm,rm->r", body.weight, room.x[modes]) - body.ground[:, 1] * (
-        room.end[1] - course.value[instant - 1, 1]
-    )
-    march.work.q[:] = before.rows.opening + moved
+    march.work.q[:] = before.rows.opening + np.einsum("rm,rm->r", body.weight, room.x[modes])
+    march.work.q[: len(body.ground)] -= body.ground[:, 1] * (room.end[1] - room.start[1])
     hold_base(march, stage, length, start, before, after)
     W = length.flexible.W
     force = dptsv(W[0] + march.laws.compliance, W[1, :-1], -march.work.q)[2]
@@ -190,9 +184,10 @@ def make_linear_stage(
     after.rows.force[:] = force
     after.rows.opening[:] = -march.laws.compliance * force
     after.z[:] = before.z + room.x + length.numbers[3] * length.inverse * room.pushed
-    after.R[:] = h2 * (room.load - body.k * after.z + room.pushed)
-    after.a[:] = inertia_force(numbers, after.R, room.R, room.a)
-    after.p[:] = velocity_corrector(numbers, room.p, room.a, before.a, after.a)
+    end = length.end
+    after.R[:] = march.scheme.step**2 * (room.load - body.k * after.z + room.pushed)
+    after.a[:] = end[0] * after.R + end[1] * start.R + end[2] * start.a
+    after.p[:] = end[3] * start.p + end[4] * start.a + end[5] * before.a + end[6] * after.a
     if blocks.base == SPRUNG:
         end_surface(march, stage, length, after)
     lowest, below = lowest_face(march, after)
@@ -207,7 +202,7 @@ def hold_base(
 ) -> None:
     """Make the rows of what is below the column, and welds of an explicit stage, what they are."""
     if march.method.base == HALF_SPACE:
-        free_half_space(march, stage, length, before)
+        free_half_space(march, stage, length, start, before)
     elif march.method.base == SPRUNG:
         free_surface(march, stage, length, start, before, after)
     if length.numbers[3] == 0:
@@ -226,14 +221,18 @@ def place_blocks(march: March, state: AnyState) -> None:
     """Write the means from gaps, slips and stretches, above the base or the lowest block."""
     blocks = march.method
     modes = blocks.modes
-    rows = state.rows
+    root = blocks.root
+    half = blocks.half
+    gap = blocks.gap
+    opening = state.rows.opening
+    path = state.path
     z = state.z
     lowest, below = lowest_face(march, state)
-    for i in range(lowest, len(rows.state)):
-        half = blocks.half[i] * z[modes * (i + 1) - 1]
-        mean = below + (rows.opening[i] - blocks.gap[i]) + state.path[i] + half
-        z[modes * i] = blocks.root[i] * mean
-        below = mean + half
+    for i in range(lowest, len(gap)):
+        stretched = half[i] * z[modes * (i + 1) - 1]
+        mean = below + (opening[i] - gap[i]) + path[i] + stretched
+        z[modes * i] = root[i] * mean
+        below = mean + stretched
 
 
 # ---- a spring above a half-space -------------------------------------------------------------------------------------
@@ -272,7 +271,7 @@ def end_surface(march: March, stage: StageRoom, length: Length, after: AnyState)
 # ---- feet that are no contacts, and welds ----------------------------------------------------------------------------
 
 
-def free_half_space(march: March, stage: StageRoom, length: Length, before: AnyState) -> None:
+def free_half_space(march: March, stage: StageRoom, length: Length, start: AnyState, before: AnyState) -> None:
     """Make the lowest row that of a half-space, whose force follows the velocity of the foot.
 
     That is v* + late h B_0 s^-1 B' N, with v* its velocity without forces; the row is over `late`, as the others are.
@@ -282,7 +281,7 @@ def free_half_space(march: March, stage: StageRoom, length: Length, before: AnyS
     h = length.numbers[2]
     speed = 0.0
     for i in range(march.method.modes):
-        speed += body.weight[0][i] * free_velocity(march, stage, length, before, i) / h
+        speed += body.weight[0][i] * free_velocity(march, length, start, before, i) / h
     weight = weight_of_welds(length)
     own = weight / (numbers.delta * (1 - numbers.af) / (1 - numbers.am) * h)
     length.flexible.W[0][0] = weight * coupling(body, length.inverse, 0, 0) + own / march.method.impedance
@@ -311,7 +310,7 @@ def hold_welds(march: March, length: Length, before: AnyState) -> None:
     for r in range(len(q)):
         if laws.compliance[r] == 0 and not (r == 0 and march.method.base == HALF_SPACE):
             q[r] = moved_row(body, r, room.pushed)
-            if body.ground[r][1] != 0:
+            if r < len(body.ground) and body.ground[r][1] != 0:
                 q[r] -= h2 * room.end[ACCELERATION]
             W[0][r] = h2 * coupling(body, length.inverse, r, r)
     for r in range(len(q) - 1):

@@ -36,7 +36,7 @@ from dda.march.step import (
     Part,
     StageRoom,
     add_push,
-    begin_step,
+    coasted,
     end_modes,
     free_modes,
     kept_discount,
@@ -217,7 +217,7 @@ def make_stage(
     near = nearest(rolling, REACH * rolling.size)
     total = 0
     for attempt in range(PAIRS):
-        outcome, solves = settle(march, stage, length, before, after, near)
+        outcome, solves = settle(march, length, start, before, after, near)
         total += solves
         if outcome != FOUND or not another_crossed(rolling, after):
             return outcome, total
@@ -253,8 +253,7 @@ def predict(
     room = march.room
     numbers = stage.numbers
     prescribe(march, course, stage, part)
-    begin_step(march, start, length)
-    free_modes(march, stage, length, before)
+    free_modes(march, length, start, before)
     place_corners(rolling, before.q, before.Q, room.start, rolling.rest)
     by_modes(rolling, room.x, rolling.new)
     move(rolling, before, rolling.new)
@@ -263,7 +262,7 @@ def predict(
         rolling.near[k] = min(rolling.rest[k][1], rolling.place[k][1])
     share = numbers.end - numbers.begin
     for i in range(len(room.pushed)):
-        room.pushed[i] = share * room.p[i] + share * share * room.a[i] / 2
+        room.pushed[i] = coasted(length, start, share, i)
     by_modes(rolling, room.pushed, rolling.guess)
 
 
@@ -327,7 +326,7 @@ def another_crossed(rolling: Rolling, after: RollingState) -> bool:
 
 
 def settle(
-    march: March, stage: StageRoom, length: Length, before: RollingState, after: RollingState, near: int
+    march: March, length: Length, start: RollingState, before: RollingState, after: RollingState, near: int
 ) -> Solved:
     """Make the stage with the corners `at`, and again with the turn that it found until nothing changes."""
     rolling = march.method
@@ -358,7 +357,7 @@ def settle(
                 settled = False
         copy(rolling.new, rolling.D)
         if settled or (near == 0 and rolling.loads == 0):
-            accept(march, stage, length, before, after, near)
+            accept(march, length, start, before, after, near)
             return FOUND, solves
     return NONE, solves
 
@@ -481,7 +480,7 @@ def set_openings(march: March, length: Length, near: int) -> None:
 
 
 def accept(
-    march: March, stage: StageRoom, length: Length, before: RollingState, after: RollingState, near: int
+    march: March, length: Length, start: RollingState, before: RollingState, after: RollingState, near: int
 ) -> None:
     """Write the state at the end of the stage."""
     rolling = march.method
@@ -492,7 +491,7 @@ def accept(
     if near > 0:
         set_rows(march, before, near)
         add_push(march, rolling.after.force)
-    end_modes(march, stage, length, before, after)
+    end_modes(march, length, start, before, after)
     move(rolling, before, rolling.D)
     copy(rolling.q, after.q)
     copy_matrix(rolling.turn.end, after.Q)

@@ -15,11 +15,11 @@ from dda.march.account import account, add_bulk_loss, add_damping, half_square
 from dda.march.energy import ALGORITHMIC, CONTACT, GIVEN, IMPULSE
 from dda.march.step import (
     Course,
+    Length,
     March,
     Part,
     StageRoom,
     State,
-    begin_step,
     keep_modes,
     length_of,
     moved_row,
@@ -137,9 +137,9 @@ def make_impact_stage(
     h = length.numbers[2]
     theta = math.sqrt(stage.numbers.alpha)
     prescribe(march, course, stage, part)
-    begin_step(march, start, length)
+    discount(march, length, start)
     mean_loads(march, theta)
-    write_loads(body.loads, room.end, room.load)
+    write_loads(march)
     for i in range(len(body.k)):
         held = room.load[i] - body.k[i] * (before.z[i] + theta * room.p[i])
         room.x[i] = length.inverse[i] * h * h * held
@@ -167,6 +167,12 @@ def make_impact_stage(
     return FOUND, solves
 
 
+def discount(march: March, length: Length, start: State) -> None:
+    """Write u = gg v at the start of a step, times its length."""
+    for i in range(len(march.room.p)):
+        march.room.p[i] = length.numbers[1] * length.numbers[0] * start.p[i]
+
+
 def mean_loads(march: March, late: float) -> None:
     """Write the shares of the loads over a stage, `late` of them as at its end, in place of those at its end."""
     room = march.room
@@ -189,7 +195,7 @@ def account_impact(march: March, state: State, after: State, course: Course, par
     theta = math.sqrt(march.last.numbers.alpha)
     add_damping(march, part, half_square(state.p) / (scheme.step * scheme.step), sums)
     prescribe(march, course, march.last, part)
-    begin_step(march, state, length)
+    discount(march, length, state)
     mean_loads(march, theta)
     stored = 0.0
     for i in range(len(body.k)):

@@ -69,7 +69,7 @@ class Body(NamedTuple):
     stored: Vector  # (l,) share of each load that counts as energy of the load, the rest of its work as given
     first: Any  # (m,) first of the modes that a row of contact feels
     weight: Matrix  # (m, w) its opening by this and those that follow
-    ground: Matrix  # (m, 2) what a unit displacement of the base, along and away from itself, takes from the openings
+    ground: Matrix  # (g, 2) what a unit displacement of the base, along and away from itself, takes from the first ones
     mobility: Vector  # (n,) acceleration by a unit modal force; one, unless a body grows
 
 
@@ -89,6 +89,8 @@ class Length(NamedTuple):
     """What belongs to a stage of one length."""
 
     numbers: Vector  # (4,) length over dt, gg for it, length [s], weight of contact forces in z [s^2], 1 of impulses
+    free: Vector  # (6,) of s times an increment: p, a and R of the start, p and a of the stage before, the force [s^2]
+    end: Vector  # (7,) of a: dt^2 times the force, R and a of the start; of p: p and a of it, a before, a at the end
     inverse: Vector  # (n,) 1/s
     flexible: Flexibility
 
@@ -117,9 +119,8 @@ class Room(NamedTuple):
 
     start: Vector  # (2 + l,) displacement of the base [m], and the shares of the loads, at the start of a stage
     end: Vector  # the same at its end
-    p: Vector  # (n,) discounted p, a and R at the start of the step, in units of its length
-    a: Vector
-    R: Vector
+    shares: Vector  # (l,) by which the loads are written
+    p: Vector  # (n,) velocities of a rule of contact, or where they are kept
     x: Vector  # (n,) increments without contact forces
     load: Vector  # (n,) loads at the end of the stage
     pushed: Vector  # (n,) B' lambda
@@ -209,7 +210,8 @@ def march_of(
     n = len(body.k)
     m = len(laws.compliance)
     rooms = [stage_room(plain_stage(stage), n, m, laws.banded) for stage in scheme.stages]
-    vectors = [np.zeros(2 + len(body.loads)) for _ in range(2)] + list(np.zeros((6, n))) + list(np.zeros((2, m)))
+    vectors = [np.zeros(2 + len(body.loads)) for _ in range(2)] + [np.full(len(body.loads), np.nan)]
+    vectors += list(np.zeros((4, n))) + list(np.zeros((2, m)))
     march = March(
         body=body,
         laws=laws,
@@ -236,8 +238,13 @@ def state_of(modes: int, opening: Array, state: Any) -> State:
 
 def stage_room(stage: Stage, modes: int, rows: int, banded: bool) -> StageRoom:
     """Return a stage, with room for what belongs to it."""
-    lengths = [Length(np.zeros(4), np.zeros(modes), flexibility_for(rows, banded)) for _ in range(2)]
+    lengths = [length_for(modes, flexibility_for(rows, banded)) for _ in range(2)]
     return StageRoom(stage, *lengths)
+
+
+def length_for(modes: int, flexible: Flexibility) -> Length:
+    """Return room for what belongs to a length."""
+    return Length(np.zeros(4), np.zeros(6), np.zeros(7), np.ones(modes), flexible)
 
 
 def course_of(motion: BaseMotion | None, ramp: float) -> Course:
@@ -286,10 +293,12 @@ def set_modes(march: March, stage: StageRoom, ratio: float, length: Length) -> f
     weight = (implicit if march.scheme.averages else 0.5) * h * h
     if march.scheme.impulses:
         weight = 1.0
-    length.numbers[0] = ratio
-    length.numbers[1] = march.scheme.gg**ratio
-    length.numbers[2] = h
-    length.numbers[3] = weight
+    if length.numbers[0] != ratio:
+        length.numbers[0] = ratio
+        length.numbers[1] = march.scheme.gg**ratio
+        length.numbers[2] = h
+        length.numbers[3] = weight
+        write_formulas(stage.numbers, length)
     for i in range(len(body.k)):
         length.inverse[i] = 1 / (1 + implicit * h * h * body.k[i])
     if march.laws.retardation > 0:  # forces change y + tau y', by which these springs press
@@ -298,6 +307,30 @@ def set_modes(march: March, stage: StageRoom, ratio: float, length: Length) -> f
         length.flexible.own[0] = weight / retarded if weight > 0 else 0.0
         weight = retarded
     return weight
+
+
+def write_formulas(numbers: Stage, length: Length) -> None:
+    """Write the scheme's formulas as factors of what enters them, in units of dt; gg is in that of p."""
+    ratio = length.numbers[0]
+    gg = length.numbers[1]
+    h = length.numbers[2]
+    square = ratio * ratio
+    alpha = numbers.alpha
+    free = length.free
+    end = length.end
+    free[0] = predictor(numbers, gg * ratio, 0.0, 0.0, 0.0)
+    free[1] = predictor(numbers, 0.0, square, 0.0, 0.0) + alpha * inertia_force(numbers, 0.0, 0.0, square)
+    free[2] = alpha * inertia_force(numbers, 0.0, square, 0.0)
+    free[3] = predictor(numbers, 0.0, 0.0, ratio, 0.0)
+    free[4] = predictor(numbers, 0.0, 0.0, 0.0, square)
+    free[5] = alpha * inertia_force(numbers, h * h, 0.0, 0.0)
+    end[0] = inertia_force(numbers, 1.0, 0.0, 0.0)
+    end[1] = inertia_force(numbers, 0.0, 1.0, 0.0)
+    end[2] = inertia_force(numbers, 0.0, 0.0, 1.0)
+    end[3] = velocity_corrector(numbers, gg, 0.0, 0.0, 0.0)
+    end[4] = velocity_corrector(numbers, 0.0, ratio, 0.0, 0.0)
+    end[5] = velocity_corrector(numbers, 0.0, 0.0, ratio, 0.0)
+    end[6] = velocity_corrector(numbers, 0.0, 0.0, 0.0, ratio)
 
 
 def write_flexibility(march: March, weight: float, length: Length) -> None:
@@ -336,12 +369,18 @@ def coupling(body: Body, inverse: Vector, r: int, s: int) -> float:
 
 def moved_row(body: Body, r: int, x: Vector) -> float:
     """Return B_r x."""
-    weight = body.weight[r]
-    first = body.first[r]
+    mode = body.first[r]
     total = 0.0
-    for e in range(len(weight)):
-        total += weight[e] * x[first + e]
+    for weight in body.weight[r]:
+        total += weight * x[mode]
+        mode += 1
     return total
+
+
+def coasted(length: Length, start: AnyState, share: float, i: int) -> float:
+    """Return the way of a mode in a share of a length at the acceleration of its start."""
+    way = share * length.numbers[0]
+    return float(length.numbers[1] * way * start.p[i] + way * way * start.a[i] / 2)
 
 
 def push_modes(march: March, force: Vector) -> None:
@@ -367,15 +406,17 @@ def add_push(march: March, force: Vector) -> None:
     weight = body.weight
     mobility = body.mobility
     pushed = march.room.pushed
-    by = march.room.force
-    forces_of_ways(march, force)
+    by = force
+    if march.laws.paired:
+        by = march.room.force
+        forces_of_ways(march, force)
     for r in range(len(force)):
         push = by[r]
         if push != 0.0:
-            row = weight[r]
             mode = body.first[r]
-            for e in range(len(row)):
-                pushed[mode + e] += mobility[mode + e] * row[e] * push
+            for share in weight[r]:
+                pushed[mode] += mobility[mode] * share * push
+                mode += 1
 
 
 def length_of(march: March, stage: StageRoom, ratio: float) -> Length:
@@ -417,58 +458,54 @@ def look_up(course: Course, time: float, out: Vector) -> None:
             out[j] = before[j]
 
 
-def begin_step(march: March, start: AnyState, length: Length) -> None:
-    """Write what all stages take from the start of a step; its velocity is discounted here."""
-    p = march.room.p
-    a = march.room.a
-    R = march.room.R
-    ratio = length.numbers[0]
-    gg = length.numbers[1]
-    p_0 = start.p
-    a_0 = start.a
-    R_0 = start.R
-    square = ratio * ratio
-    for i in range(len(p)):
-        p[i] = gg * (ratio * p_0[i])
-        a[i] = square * a_0[i]
-        R[i] = square * R_0[i]
-
-
-def write_loads(loads: Matrix, shares: Vector, out: Vector) -> None:
-    """Write the loads of all modes by the shares of each, which come after the base's displacement."""
+def write_loads(march: March) -> None:
+    """Write the loads of all modes where a share has changed; the shares come after the base's displacement."""
+    room = march.room
+    shares = room.shares
+    out = room.load
+    changed = False
+    for j in range(len(shares)):
+        if shares[j] != room.end[2 + j]:
+            shares[j] = room.end[2 + j]
+            changed = True
+    if not changed:
+        return
     for i in range(len(out)):
         out[i] = 0.0
-    for j in range(len(loads)):
-        share = shares[2 + j]
-        load = loads[j]
+    for j in range(len(shares)):
+        share = shares[j]
+        load = march.body.loads[j]
         if share != 0.0:
             for i in range(len(out)):
                 out[i] += share * load[i]
 
 
-def free_modes(march: March, stage: StageRoom, length: Length, before: AnyState) -> None:
+def free_modes(march: March, length: Length, start: AnyState, before: AnyState) -> None:
     """Write the loads at the end of a stage, and the increments of the modes in it without contact forces."""
     room = march.room
-    numbers = stage.numbers
-    alpha = numbers.alpha
     k = march.body.k
     x = room.x
-    p_0 = room.p
-    a_0 = room.a
-    R_0 = room.R
+    load = room.load
+    inverse = length.inverse
+    p_0 = start.p
+    a_0 = start.a
+    R_0 = start.R
     z = before.z
     p = before.p
     a = before.a
-    load = room.load
-    inverse = length.inverse
-    ratio = length.numbers[0]
-    h2 = length.numbers[2] * length.numbers[2]
-    square = ratio * ratio
-    write_loads(march.body.loads, room.end, load)
+    by_p_0 = length.free[0]
+    by_a_0 = length.free[1]
+    by_R_0 = length.free[2]
+    by_p = length.free[3]
+    by_a = length.free[4]
+    by_force = length.free[5]
+    more = by_R_0 != 0.0 or by_p != 0.0 or by_a != 0.0  # than Newmark's scheme takes
+    write_loads(march)
     for i in range(len(k)):
-        held = inertia_force(numbers, h2 * (load[i] - k[i] * z[i]), R_0[i], a_0[i])
-        moving = predictor(numbers, p_0[i], a_0[i], ratio * p[i], square * a[i])
-        x[i] = inverse[i] * (moving + alpha * held)
+        moved = by_p_0 * p_0[i] + by_a_0 * a_0[i] + by_force * (load[i] - k[i] * z[i])
+        if more:
+            moved += by_R_0 * R_0[i] + by_p * p[i] + by_a * a[i]
+        x[i] = inverse[i] * moved
 
 
 def free_rows(march: March, before: AnyState) -> None:
@@ -484,11 +521,11 @@ def free_rows(march: March, before: AnyState) -> None:
     along = room.end[0] - room.start[0]
     away = room.end[1] - room.start[1]
     for r in range(len(free)):
-        moved = moved_row(body, r, x)
+        free[r] = moved_row(body, r, x)
+    for r in range(len(ground)):
         if not (paired and r == 3):  # a base that moves leaves the difference of two ways alone
-            moved -= ground[r][0] * along
-            moved -= ground[r][1] * away
-        free[r] = moved
+            free[r] -= ground[r][0] * along
+            free[r] -= ground[r][1] * away
     if paired:
         mean = free[2]
         difference = free[3]
@@ -500,24 +537,24 @@ def free_rows(march: March, before: AnyState) -> None:
         q[r] = opening[r] + free[r]
 
 
-def free_velocity(march: March, stage: StageRoom, length: Length, before: AnyState, i: int) -> float:
+def free_velocity(march: March, length: Length, start: AnyState, before: AnyState, i: int) -> float:
     """Return h v of a mode at the end of a stage without contact forces."""
     room = march.room
-    ratio = length.numbers[0]
-    h = length.numbers[2]
-    force = h * h * (room.load[i] - march.body.k[i] * (before.z[i] + room.x[i]))
-    a = inertia_force(stage.numbers, force, room.R[i], room.a[i])
-    p: float = velocity_corrector(stage.numbers, room.p[i], room.a[i], ratio * ratio * before.a[i], a)
-    return p
+    step = march.scheme.step
+    end = length.end
+    R = step * step * (room.load[i] - march.body.k[i] * (before.z[i] + room.x[i]))
+    a = end[0] * R + end[1] * start.R[i] + end[2] * start.a[i]
+    p = end[3] * start.p[i] + end[4] * start.a[i] + end[5] * before.a[i] + end[6] * a
+    return float(length.numbers[0] * p)
 
 
-def retard(march: March, stage: StageRoom, length: Length, before: State) -> None:
+def retard(march: March, stage: StageRoom, length: Length, start: State, before: State) -> None:
     """Add tau y' at the end of a stage without contact forces to the openings; a base moves evenly."""
     body = march.body
     room = march.room
     h = length.numbers[2]
     for i in range(len(body.k)):
-        room.pushed[i] = free_velocity(march, stage, length, before, i)
+        room.pushed[i] = free_velocity(march, length, start, before, i)
     for r in range(len(room.free)):
         rate = moved_row(body, r, room.pushed) / h
         for axis in range(2):
@@ -527,44 +564,53 @@ def retard(march: March, stage: StageRoom, length: Length, before: State) -> Non
         march.work.q[r] += march.work.late[r]
 
 
-def end_modes(march: March, stage: StageRoom, length: Length, before: AnyState, after: AnyState) -> None:
+def end_modes(march: March, length: Length, start: AnyState, before: AnyState, after: AnyState) -> None:
     """Write the modes at the end of a stage under the forces `room.pushed`."""
     room = march.room
-    numbers = stage.numbers
+    step = march.scheme.step
     averages = march.scheme.averages
     k = march.body.k
     x = room.x
-    p_0 = room.p
-    a_0 = room.a
-    R_0 = room.R
     load = room.load
     pushed = room.pushed
+    inverse = length.inverse
+    p_0 = start.p
+    a_0 = start.a
+    R_0 = start.R
     z_before = before.z
     a_before = before.a
-    inverse = length.inverse
-    ratio = length.numbers[0]
-    h2 = length.numbers[2] * length.numbers[2]
-    weight = length.numbers[3]
-    square = ratio * ratio
-    per_length = 1 / ratio
-    per_square = per_length * per_length
     z_end = after.z
-    R_end = after.R
-    a_end = after.a
     p_end = after.p
+    a_end = after.a
+    R_end = after.R
+    weight = length.numbers[3]
+    of_R = length.end[0]
+    of_R_0 = length.end[1]
+    of_a_0 = length.end[2]
+    by_p_0 = length.end[3]
+    by_a_0 = length.end[4]
+    by_a_before = length.end[5]
+    by_a = length.end[6]
+    more = of_R_0 != 0.0 or of_a_0 != 0.0 or by_a_before != 0.0  # than Newmark's scheme takes
+    dt2 = step * step
+    impulse = length.numbers[0] * dt2
     for i in range(len(x)):
         z = z_before[i] + x[i] + weight * inverse[i] * pushed[i]
-        R = h2 * (load[i] - k[i] * z)
+        R = dt2 * (load[i] - k[i] * z)
         if averages:
-            R += h2 * pushed[i]
-        a = inertia_force(numbers, R, R_0[i], a_0[i])
-        p = velocity_corrector(numbers, p_0[i], a_0[i], square * a_before[i], a)
+            R += dt2 * pushed[i]
+        a = R
+        p = by_p_0 * p_0[i] + by_a_0 * a_0[i]
+        if more:
+            a = of_R * R + of_R_0 * R_0[i] + of_a_0 * a_0[i]
+            p += by_a_before * a_before[i]
+        p += by_a * a
         if not averages:
-            p += h2 * pushed[i]
+            p += impulse * pushed[i]
         z_end[i] = z
-        R_end[i] = R * per_square
-        a_end[i] = a * per_square
-        p_end[i] = p * per_length
+        p_end[i] = p
+        a_end[i] = a
+        R_end[i] = R
 
 
 def end_paths(march: March, flexible: Flexibility, before: AnyState, after: AnyState) -> None:
@@ -572,11 +618,15 @@ def end_paths(march: March, flexible: Flexibility, before: AnyState, after: AnyS
     laws = march.laws
     n = laws.contacts
     rows = after.rows
-    for r in range(len(rows.force)):
-        after.path[r] = before.path[r] + rows.slip[r]
-        if r >= n and (rows.state[r - n] != INSIDE or before.rows.state[r - n] != INSIDE):
+    slip = rows.slip
+    path = after.path
+    path_before = before.path
+    for r in range(len(slip)):
+        path[r] = path_before[r] + slip[r]
+    for r in range(n, len(slip)):
+        if rows.state[r - n] != INSIDE or before.rows.state[r - n] != INSIDE:
             way = march.room.free[r] + flexed(laws, flexible, r, rows.force)
-            after.path[r] = before.path[r] + before.rows.opening[r] + way - rows.opening[r]
+            path[r] = path_before[r] + before.rows.opening[r] + way - rows.opening[r]
 
 
 def stage_with(find: Finder) -> Finder:
@@ -595,15 +645,14 @@ def stage_with(find: Finder) -> Finder:
         """Go from the end of the stage before to the end of a stage; return the outcome and the number of solves."""
         length = length_of(march, stage, part.ratio)
         prescribe(march, course, stage, part)
-        begin_step(march, start, length)
-        free_modes(march, stage, length, before)
+        free_modes(march, length, start, before)
         free_rows(march, before)
         if march.laws.retardation > 0:
-            retard(march, stage, length, before)
+            retard(march, stage, length, start, before)
         outcome, solves = find(march, before.rows, length.flexible, after.rows)
         if outcome == FOUND:
             push_modes(march, march.work.mean)
-            end_modes(march, stage, length, before, after)
+            end_modes(march, length, start, before, after)
             end_paths(march, length.flexible, before, after)
         return outcome, solves
 

@@ -23,7 +23,7 @@ from dda.march.step import (
     March,
     Part,
     StageRoom,
-    begin_step,
+    coasted,
     end_modes,
     free_modes,
     kept_discount,
@@ -119,8 +119,7 @@ def make_stage(
     plane.made[0] = 0 if stage.numbers.begin == 0 else 1
     length = length_in_plane(march, stage, part.ratio)
     prescribe(march, course, stage, part)
-    begin_step(march, start, length)
-    free_modes(march, stage, length, before)
+    free_modes(march, length, start, before)
     for i in range(len(plane.D)):
         column = blocks.motion[i]
         if column >= 0:
@@ -135,7 +134,7 @@ def make_stage(
     place_contacts(blocks, before.q, plane.ends, places)
     share = stage.numbers.end - stage.numbers.begin
     for i in range(len(plane.x)):
-        plane.x[i] = share * room.p[i] + share * share * room.a[i] / 2
+        plane.x[i] = coasted(length, start, share, i)
     copy(before.p, after.p)
     copy(before.a, after.a)
     increments(blocks, before.q, plane.x, plane.chords, plane.new)
@@ -163,7 +162,7 @@ def make_stage(
             if outcome != FOUND:
                 return outcome, solves
             push_contacts(blocks, places, after.rows.force, room.pushed)
-        end_modes(march, stage, length, before, after)
+        end_modes(march, length, start, before, after)
         for i in range(len(plane.x)):
             plane.x[i] = room.x[i] + length.numbers[3] * length.inverse[i] * room.pushed[i]
         increments(blocks, before.q, plane.x, plane.chords, plane.new)
