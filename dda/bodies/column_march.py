@@ -22,7 +22,7 @@ from dda.bodies.column_step import (
 )
 from dda.contact.band import find_in_band
 from dda.contact.rows import INSIDE, LOWER, Laws, flexibility_for, rows_of
-from dda.march.step import Body, Course, March, length_for, moved_row, write_flexibility
+from dda.march.step import Body, Course, March, length_for, move_rows, write_flexibility
 from dda.model.arrays import Array, ArrayPair
 from dda.scheme.newmark import Scheme, late_momentum
 
@@ -274,7 +274,8 @@ def rigid_forces(march: March, rates: Array, base: float, unknown: Array, force:
 def row_rates(march: March, rates: Array, base: float) -> Array:
     """Return how fast each row opens or slips, (rows,), for velocities or accelerations of the modes."""
     # no product of a library, whose fused sums tear apart blocks that fall alike
-    moved = np.array([moved_row(march.body, r, rates) for r in range(len(march.body.first))])
+    moved = np.zeros(len(march.body.first))
+    move_rows(march.body, rates, moved)
     moved[: len(march.body.ground)] -= march.body.ground[:, 1] * base
     return moved
 

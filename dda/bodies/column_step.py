@@ -59,7 +59,7 @@ from dda.march.step import (
     free_velocity,
     kept_discount,
     length_of,
-    moved_row,
+    move_rows,
     prescribe,
     push_modes,
     steps_by,
@@ -307,9 +307,10 @@ def hold_welds(march: March, length: Length, before: AnyState) -> None:
     h2 = weight_of_welds(length)
     for i in range(len(body.k)):
         room.pushed[i] = h2 * (room.load[i] - body.k[i] * (before.z[i] + room.x[i]))
+    move_rows(body, room.pushed, room.free)
     for r in range(len(q)):
         if laws.compliance[r] == 0 and not (r == 0 and march.method.base == HALF_SPACE):
-            q[r] = moved_row(body, r, room.pushed)
+            q[r] = room.free[r]
             if r < len(body.ground) and body.ground[r][1] != 0:
                 q[r] -= h2 * room.end[ACCELERATION]
             W[0][r] = h2 * coupling(body, length.inverse, r, r)
@@ -408,20 +409,21 @@ def keep_observed(march: March, state: AnyState, kept: Matrix, number: int) -> b
     lag = march.scheme.lag
     discount = kept_discount(march.scheme, number)
     columns = len(observed.kind)
+    modes = blocks.modes
+    carried = 1 if blocks.base >= WELDED else 0  # blocks whose feet move as the base does
     for k in range(columns):
         kind = observed.kind[k]
         i = observed.place[k]
         lower = observed.lower[k]
         upper = observed.upper[k]
-        mean = blocks.modes * i
-        stretch = mean + blocks.modes - 1
-        on_base = i == 0 and blocks.base >= WELDED
+        mean = modes * i
+        stretch = mean + modes - 1
         if kind == MODES:
-            value = lower * state.z[mean] + upper * (room.end[1] if on_base else state.z[stretch])
+            value = lower * state.z[mean] + upper * (room.end[1] if i < carried else state.z[stretch])
         elif kind == RATES:
             value = lower * (discount * state.p[mean] + lag * state.a[mean]) / march.scheme.step
             rate = (discount * state.p[stretch] + lag * state.a[stretch]) / march.scheme.step
-            value += upper * (room.end[VELOCITY] if on_base else rate)
+            value += upper * (room.end[VELOCITY] if i < carried else rate)
         elif kind == FOOT:
             value = force_of_base(march, state, room.end)
         elif kind == FORCES:

@@ -35,7 +35,7 @@ def find_in_band(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, w
     `flexible.W` holds the main diagonal and that beside it, (2, m).
     """
     m = len(before.force)
-    tried = work.tried
+    tried = after.state
     force = after.force
     opening = after.opening
     slip = after.slip
@@ -43,14 +43,14 @@ def find_in_band(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, w
     lower = laws.lower
     upper = laws.upper
     opens = laws.opens
-    z = work.z
+    q = work.q
     own = flexible.W[0]
     beside = flexible.W[1]
     copy(before.state, tried)
     solves = 0
     slack = 0.0
     while True:
-        solve_in_band(own, beside, compliance, work.q, tried, force, lower, upper, work.scale, work.first)
+        solve_in_band(own, beside, compliance, q, tried, force, lower, upper, work.scale, work.first)
         solves += 1
         if solves > laws.together:  # blocks which touch in common flight have states that only rounding tells apart
             slack = 0.0
@@ -59,37 +59,39 @@ def find_in_band(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, w
         agree = True
         for r in range(m):
             state = tried[r]
+            here = force[r]
+            apart = 0.0
             if state == INSIDE:
-                if lower[r] <= force[r] <= upper[r]:
+                opening[r] = 0.0 - here * compliance[r]  # no sum: a closed row keeps its digits
+                slip[r] = 0.0
+                if lower[r] <= here <= upper[r]:
                     continue
             else:
-                z[r] = work.q[r] + own[r] * force[r]
+                apart = q[r] + own[r] * here
                 if r > 0:
-                    z[r] += beside[r - 1] * force[r - 1]
+                    apart += beside[r - 1] * force[r - 1]
                 if r + 1 < m:
-                    z[r] += beside[r] * force[r + 1]
-                if opens[r] == 0:
-                    z[r] += compliance[r] * force[r]
-            new = next_state(state, force[r], z[r], own[r] + compliance[r], lower[r], upper[r], opens[r], 0.0, slack)
+                    apart += beside[r] * force[r + 1]
+                if opens[r] == 1:
+                    opening[r] = apart
+                    slip[r] = 0.0
+                else:
+                    stretch = compliance[r] * here
+                    apart += stretch
+                    opening[r] = 0.0 - stretch
+                    slip[r] = apart
+                if state * apart <= 0:  # as its bound has it
+                    continue
+            new = next_state(state, here, apart, own[r] + compliance[r], lower[r], upper[r], opens[r], 0.0, slack)
             if new != state and (agree or solves <= laws.together):
                 tried[r] = new
                 agree = False
         if agree:
-            break
+            return FOUND, solves
         if solves == laws.most:
             return LIMIT, solves
         if solves > laws.together + ONE_BY_ONE * (m + 1):
             return NONE, solves
-    for r in range(m):
-        after.state[r] = tried[r]
-        opening[r] = 0.0 - force[r] * compliance[r]  # no sum: a closed row keeps its digits
-        slip[r] = 0.0
-        if tried[r] != INSIDE:
-            if opens[r] == 1:
-                opening[r] = z[r]
-            else:
-                slip[r] = z[r]
-    return FOUND, solves
 
 
 def solve_in_band(
@@ -106,23 +108,28 @@ def solve_in_band(
 ) -> None:
     """Write the forces of the states `tried`: Gauss over each run of rows inside of their bounds."""
     m = len(force)
-    for r in range(m):
-        if tried[r] != INSIDE:
-            force[r] = lower[r] if tried[r] == LOWER else upper[r]
     last = UPPER
     for r in range(m):
         state = tried[r]
         if state == INSIDE:
-            pivot[r] = own[r] + compliance[r]
-            right[r] = 0.0 - q[r]
-            if last == INSIDE and r > 0:
-                factor = beside[r - 1] / pivot[r - 1]
-                pivot[r] -= factor * beside[r - 1]
-                right[r] -= factor * right[r - 1]
-            elif r > 0:
-                right[r] -= beside[r - 1] * force[r - 1]
+            here = own[r] + compliance[r]
+            push = 0.0 - q[r]
+            if r > 0:
+                across = beside[r - 1]
+                if last == INSIDE:
+                    factor = across / pivot[r - 1]
+                    here -= factor * across
+                    push -= factor * right[r - 1]
+                else:
+                    push -= across * force[r - 1]
+            pivot[r] = here
+            right[r] = push
+        else:
+            force[r] = lower[r] if state == LOWER else upper[r]
         last = state
+    above = 0.0
     for r in range(m - 1, -1, -1):
         if tried[r] == INSIDE:
-            above = beside[r] * force[r + 1] if r + 1 < m else 0.0
             force[r] = (right[r] - above) / pivot[r]
+        if r > 0:
+            above = beside[r - 1] * force[r]

@@ -22,7 +22,7 @@ from dda.march.step import (
     State,
     keep_modes,
     length_of,
-    moved_row,
+    move_rows,
     prescribe,
     push_modes,
     stage_with,
@@ -144,9 +144,11 @@ def make_impact_stage(
         held = room.load[i] - body.k[i] * (before.z[i] + theta * room.p[i])
         room.x[i] = length.inverse[i] * h * h * held
     rows = after.rows
+    move_rows(body, room.p, room.free)
+    move_rows(body, room.x, room.force)
     for r in range(len(rows.force)):
-        rate = moved_row(body, r, room.p) / h
-        end = rate + moved_row(body, r, room.x) / h
+        rate = room.free[r] / h
+        end = rate + room.force[r] / h
         near = before.rows.opening[r] + h * rate / 2 <= 0
         rows.state[r] = INSIDE if near else LOWER
         march.work.q[r] = end + march.method.restitution * rate if near else FAR
@@ -160,8 +162,9 @@ def make_impact_stage(
         after.z[i] = before.z[i] + room.x[i]
         after.p[i] = end / length.numbers[0]
         after.a[i] = 0.0
+    move_rows(body, room.x, room.free)
     for r in range(len(rows.force)):
-        rows.opening[r] = before.rows.opening[r] + moved_row(body, r, room.x)
+        rows.opening[r] = before.rows.opening[r] + room.free[r]
         rows.force[r] /= h
         after.path[r] = 0.0
     return FOUND, solves
@@ -203,10 +206,12 @@ def account_impact(march: March, state: State, after: State, course: Course, par
         room.x[i] = part.ratio * after.p[i] - room.p[i]
         stored += body.k[i] * moved * moved + room.x[i] * room.x[i] / (h * h)
         sums[GIVEN] += (room.end[2] - 1) * body.loads[0][i] * moved
+    move_rows(body, room.p, room.free)
+    move_rows(body, room.x, room.force)
     for r in range(len(after.rows.force)):
         P = h * after.rows.force[r]
-        before = moved_row(body, r, room.p) / h
-        difference = moved_row(body, r, room.x) / h
+        before = room.free[r] / h
+        difference = room.force[r] / h
         sums[CONTACT] -= P * (before + difference / 2)
         sums[IMPULSE] += P
         stored -= P * difference

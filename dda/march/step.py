@@ -367,14 +367,17 @@ def coupling(body: Body, inverse: Vector, r: int, s: int) -> float:
     return total
 
 
-def moved_row(body: Body, r: int, x: Vector) -> float:
-    """Return B_r x."""
-    mode = body.first[r]
-    total = 0.0
-    for weight in body.weight[r]:
-        total += weight * x[mode]
-        mode += 1
-    return total
+def move_rows(body: Body, x: Vector, out: Vector) -> None:
+    """Write B x."""
+    weight = body.weight
+    first = body.first
+    for r in range(len(out)):
+        mode = first[r]
+        total = 0.0
+        for share in weight[r]:
+            total += share * x[mode]
+            mode += 1
+        out[r] = total
 
 
 def coasted(length: Length, start: AnyState, share: float, i: int) -> float:
@@ -514,14 +517,12 @@ def free_rows(march: March, before: AnyState) -> None:
     room = march.room
     ground = body.ground
     free = room.free
-    x = room.x
     q = march.work.q
     opening = before.rows.opening
     paired = march.laws.paired
     along = room.end[0] - room.start[0]
     away = room.end[1] - room.start[1]
-    for r in range(len(free)):
-        free[r] = moved_row(body, r, x)
+    move_rows(body, room.x, free)
     for r in range(len(ground)):
         if not (paired and r == 3):  # a base that moves leaves the difference of two ways alone
             free[r] -= ground[r][0] * along
@@ -555,13 +556,15 @@ def retard(march: March, stage: StageRoom, length: Length, start: State, before:
     h = length.numbers[2]
     for i in range(len(body.k)):
         room.pushed[i] = free_velocity(march, length, start, before, i)
+    late = march.work.late
+    move_rows(body, room.pushed, late)
     for r in range(len(room.free)):
-        rate = moved_row(body, r, room.pushed) / h
+        rate = late[r] / h
         for axis in range(2):
             moved = room.end[axis] - room.start[axis]
             rate -= body.ground[r][axis] * moved / (h * (stage.numbers.end - stage.numbers.begin))
-        march.work.late[r] = march.laws.retardation * rate
-        march.work.q[r] += march.work.late[r]
+        late[r] = march.laws.retardation * rate
+        march.work.q[r] += late[r]
 
 
 def end_modes(march: March, length: Length, start: AnyState, before: AnyState, after: AnyState) -> None:
