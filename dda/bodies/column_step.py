@@ -39,7 +39,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from dda.contact.band import find_in_band
-from dda.contact.dense import Matrix, Vector
+from dda.contact.dense import Matrix, Vector, copy
 from dda.contact.rows import FOUND, LOWER, Rows, Solved
 from dda.march.account import account, half_square, over_stages
 from dda.march.energy import DAMPING, GIVEN, IMPULSE
@@ -58,7 +58,6 @@ from dda.march.step import (
     free_rows,
     free_velocity,
     kept_discount,
-    length_of,
     move_rows,
     prescribe,
     push_modes,
@@ -127,8 +126,8 @@ def make_column_stage(
     """Go from the end of the stage before to the end of a stage; return the outcome and the number of solves."""
     work = march.work
     rows = after.rows
-    length = length_of(march, stage, part.ratio)
-    prescribe(march, course, stage, part)
+    length = stage.whole
+    prescribe_instants(march, course, stage, part)
     free_modes(march, length, start, before)
     free_rows(march, before)
     hold_base(march, stage, length, start, before, after)
@@ -146,6 +145,14 @@ def make_column_stage(
             if rows.state[r] != before.rows.state[r]:
                 march.tally[0] += 1
     return outcome, solves
+
+
+def prescribe_instants(march: March, course: Course, stage: StageRoom, part: Part) -> None:
+    """Write what `prescribe` does in a whole step, whose stages end at the instants of the course."""
+    stages = march.scheme.stages
+    instant = int(part.begun) * stages + (stages if stage.numbers.end == 1 else 1)
+    copy(course.value[instant - 1], march.room.start)
+    copy(course.value[instant], march.room.end)
 
 
 def make_linear_stage(
@@ -167,9 +174,7 @@ def make_linear_stage(
     room = march.room
     blocks = march.method
     length = stage.whole
-    instant = int(part.begun) * march.scheme.stages + (march.scheme.stages if stage is march.last else 1)
-    room.start[:] = course.value[instant - 1]  # whose instants are the ends of the stages
-    room.end[:] = course.value[instant]
+    prescribe_instants(march, course, stage, part)
     room.load[:] = room.end[2:] @ body.loads
     free = length.free
     moving = free[0] * start.p + free[1] * start.a + free[2] * start.R + free[3] * before.p + free[4] * before.a

@@ -496,12 +496,13 @@ def free_modes(march: March, length: Length, start: AnyState, before: AnyState) 
     z = before.z
     p = before.p
     a = before.a
-    by_p_0 = length.free[0]
-    by_a_0 = length.free[1]
-    by_R_0 = length.free[2]
-    by_p = length.free[3]
-    by_a = length.free[4]
-    by_force = length.free[5]
+    free = length.free
+    by_p_0 = free[0]
+    by_a_0 = free[1]
+    by_R_0 = free[2]
+    by_p = free[3]
+    by_a = free[4]
+    by_force = free[5]
     more = by_R_0 != 0.0 or by_p != 0.0 or by_a != 0.0  # than Newmark's scheme takes
     write_loads(march)
     for i in range(len(k)):
@@ -587,13 +588,14 @@ def end_modes(march: March, length: Length, start: AnyState, before: AnyState, a
     a_end = after.a
     R_end = after.R
     weight = length.numbers[3]
-    of_R = length.end[0]
-    of_R_0 = length.end[1]
-    of_a_0 = length.end[2]
-    by_p_0 = length.end[3]
-    by_a_0 = length.end[4]
-    by_a_before = length.end[5]
-    by_a = length.end[6]
+    end = length.end
+    of_R = end[0]
+    of_R_0 = end[1]
+    of_a_0 = end[2]
+    by_p_0 = end[3]
+    by_a_0 = end[4]
+    by_a_before = end[5]
+    by_a = end[6]
     more = of_R_0 != 0.0 or of_a_0 != 0.0 or by_a_before != 0.0  # than Newmark's scheme takes
     dt2 = step * step
     impulse = length.numbers[0] * dt2
