@@ -141,8 +141,9 @@ def make_column_stage(
     end_paths(march, length.flexible, before, after)
     place_blocks(march, after)
     if solves > 1:
-        for r in range(len(rows.state)):
-            if rows.state[r] != before.rows.state[r]:
+        was = before.rows.state
+        for r in range(len(was)):
+            if rows.state[r] != was[r]:
                 march.tally[0] += 1
     return outcome, solves
 
@@ -176,9 +177,9 @@ def make_linear_stage(
     length = stage.whole
     prescribe_instants(march, course, stage, part)
     room.load[:] = room.end[2:] @ body.loads
-    free = length.free
-    moving = free[0] * start.p + free[1] * start.a + free[2] * start.R + free[3] * before.p + free[4] * before.a
-    room.x[:] = length.inverse * (moving + free[5] * (room.load - body.k * before.z))
+    by = length.factors
+    moving = by[0] * start.p + by[1] * start.a + by[2] * start.R + by[3] * before.p + by[4] * before.a
+    room.x[:] = length.inverse * (moving + by[5] * (room.load - body.k * before.z))
     modes = body.first[:, None] + np.arange(body.weight.shape[1])  # that each row feels
     march.work.q[:] = before.rows.opening + np.einsum("rm,rm->r", body.weight, room.x[modes])
     march.work.q[: len(body.ground)] -= body.ground[:, 1] * (room.end[1] - room.start[1])
@@ -189,10 +190,9 @@ def make_linear_stage(
     after.rows.force[:] = force
     after.rows.opening[:] = -march.laws.compliance * force
     after.z[:] = before.z + room.x + length.numbers[3] * length.inverse * room.pushed
-    end = length.end
     after.R[:] = march.scheme.step**2 * (room.load - body.k * after.z + room.pushed)
-    after.a[:] = end[0] * after.R + end[1] * start.R + end[2] * start.a
-    after.p[:] = end[3] * start.p + end[4] * start.a + end[5] * before.a + end[6] * after.a
+    after.a[:] = by[6] * after.R + by[7] * start.R + by[8] * start.a
+    after.p[:] = by[9] * start.p + by[10] * start.a + by[11] * before.a + by[12] * after.a
     if blocks.base == SPRUNG:
         end_surface(march, stage, length, after)
     lowest, below = lowest_face(march, after)

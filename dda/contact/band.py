@@ -127,9 +127,9 @@ def solve_in_band(
         else:
             force[r] = lower[r] if state == LOWER else upper[r]
         last = state
-    above = 0.0
     for r in range(m - 1, -1, -1):
         if tried[r] == INSIDE:
-            force[r] = (right[r] - above) / pivot[r]
-        if r > 0:
-            above = beside[r - 1] * force[r]
+            push = right[r]
+            if r + 1 < m:
+                push -= beside[r] * force[r + 1]
+            force[r] = push / pivot[r]

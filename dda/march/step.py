@@ -58,6 +58,7 @@ from dda.scheme.stage import Stage, implicit_weight, inertia_force, plain_stage,
 
 AnyState = Any  # `State`, or what has its fields
 Finder = Callable[..., Solved]
+POWERS = 1.0, 2.0, 2.0, 1.0, 2.0, 2.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0  # of a length, in `StageRoom.factors`
 SHORTEST = 0.01  # shortest part of a step that a cut may leave
 
 
@@ -89,8 +90,7 @@ class Length(NamedTuple):
     """What belongs to a stage of one length."""
 
     numbers: Vector  # (4,) length over dt, gg for it, length [s], weight of contact forces in z [s^2], 1 of impulses
-    free: Vector  # (6,) of s times an increment: p, a and R of the start, p and a of the stage before, the force [s^2]
-    end: Vector  # (7,) of a: dt^2 times the force, R and a of the start; of p: p and a of it, a before, a at the end
+    factors: Vector  # (13,) those of a stage for it
     inverse: Vector  # (n,) 1/s
     flexible: Flexibility
 
@@ -99,6 +99,8 @@ class StageRoom(NamedTuple):
     """A stage of the scheme."""
 
     numbers: Stage  # with gg = 1: the velocity that it takes is discounted
+    factors: Vector  # (13,) in s times an increment, of p, a, R at the start, p, a of the stage before, a force [s^2];
+    # in a at its end, of R there, R and a at the start; in p, of p and a at the start, a before, a at its end
     whole: Length  # of a whole step
     part: Length  # of the last part of a step
 
@@ -239,12 +241,16 @@ def state_of(modes: int, opening: Array, state: Any) -> State:
 def stage_room(stage: Stage, modes: int, rows: int, banded: bool) -> StageRoom:
     """Return a stage, with room for what belongs to it."""
     lengths = [length_for(modes, flexibility_for(rows, banded)) for _ in range(2)]
-    return StageRoom(stage, *lengths)
+    ahead = predictor(stage, *np.eye(4))
+    held = inertia_force(stage, *np.eye(3))
+    late = velocity_corrector(stage, *np.eye(4))
+    free = ahead[0], ahead[1] + stage.alpha * held[2], stage.alpha * held[1], *ahead[2:], stage.alpha * held[0]
+    return StageRoom(stage, np.concatenate([free, held, late]), *lengths)
 
 
 def length_for(modes: int, flexible: Flexibility) -> Length:
     """Return room for what belongs to a length."""
-    return Length(np.zeros(4), np.zeros(6), np.zeros(7), np.ones(modes), flexible)
+    return Length(np.zeros(4), np.zeros(len(POWERS)), np.ones(modes), flexible)
 
 
 def course_of(motion: BaseMotion | None, ramp: float) -> Course:
@@ -298,7 +304,7 @@ def set_modes(march: March, stage: StageRoom, ratio: float, length: Length) -> f
         length.numbers[1] = march.scheme.gg**ratio
         length.numbers[2] = h
         length.numbers[3] = weight
-        write_formulas(stage.numbers, length)
+        set_factors(march, stage, length)
     for i in range(len(body.k)):
         length.inverse[i] = 1 / (1 + implicit * h * h * body.k[i])
     if march.laws.retardation > 0:  # forces change y + tau y', by which these springs press
@@ -309,28 +315,14 @@ def set_modes(march: March, stage: StageRoom, ratio: float, length: Length) -> f
     return weight
 
 
-def write_formulas(numbers: Stage, length: Length) -> None:
-    """Write the scheme's formulas as factors of what enters them, in units of dt; gg is in that of p."""
-    ratio = length.numbers[0]
-    gg = length.numbers[1]
-    h = length.numbers[2]
-    square = ratio * ratio
-    alpha = numbers.alpha
-    free = length.free
-    end = length.end
-    free[0] = predictor(numbers, gg * ratio, 0.0, 0.0, 0.0)
-    free[1] = predictor(numbers, 0.0, square, 0.0, 0.0) + alpha * inertia_force(numbers, 0.0, 0.0, square)
-    free[2] = alpha * inertia_force(numbers, 0.0, square, 0.0)
-    free[3] = predictor(numbers, 0.0, 0.0, ratio, 0.0)
-    free[4] = predictor(numbers, 0.0, 0.0, 0.0, square)
-    free[5] = alpha * inertia_force(numbers, h * h, 0.0, 0.0)
-    end[0] = inertia_force(numbers, 1.0, 0.0, 0.0)
-    end[1] = inertia_force(numbers, 0.0, 1.0, 0.0)
-    end[2] = inertia_force(numbers, 0.0, 0.0, 1.0)
-    end[3] = velocity_corrector(numbers, gg, 0.0, 0.0, 0.0)
-    end[4] = velocity_corrector(numbers, 0.0, ratio, 0.0, 0.0)
-    end[5] = velocity_corrector(numbers, 0.0, 0.0, ratio, 0.0)
-    end[6] = velocity_corrector(numbers, 0.0, 0.0, 0.0, ratio)
+def set_factors(march: March, stage: StageRoom, length: Length) -> None:
+    """Write the factors of the scheme's formulas for a length, whose state is in units of dt."""
+    factors = length.factors
+    for k in range(len(factors)):
+        factors[k] = stage.factors[k] * length.numbers[0] ** POWERS[k]
+    factors[0] *= length.numbers[1]
+    factors[5] *= march.scheme.step * march.scheme.step
+    factors[9] *= length.numbers[1]
 
 
 def write_flexibility(march: March, weight: float, length: Length) -> None:
@@ -496,13 +488,13 @@ def free_modes(march: March, length: Length, start: AnyState, before: AnyState) 
     z = before.z
     p = before.p
     a = before.a
-    free = length.free
-    by_p_0 = free[0]
-    by_a_0 = free[1]
-    by_R_0 = free[2]
-    by_p = free[3]
-    by_a = free[4]
-    by_force = free[5]
+    factors = length.factors
+    by_p_0 = factors[0]
+    by_a_0 = factors[1]
+    by_R_0 = factors[2]
+    by_p = factors[3]
+    by_a = factors[4]
+    by_force = factors[5]
     more = by_R_0 != 0.0 or by_p != 0.0 or by_a != 0.0  # than Newmark's scheme takes
     write_loads(march)
     for i in range(len(k)):
@@ -543,10 +535,10 @@ def free_velocity(march: March, length: Length, start: AnyState, before: AnyStat
     """Return h v of a mode at the end of a stage without contact forces."""
     room = march.room
     step = march.scheme.step
-    end = length.end
+    factors = length.factors
     R = step * step * (room.load[i] - march.body.k[i] * (before.z[i] + room.x[i]))
-    a = end[0] * R + end[1] * start.R[i] + end[2] * start.a[i]
-    p = end[3] * start.p[i] + end[4] * start.a[i] + end[5] * before.a[i] + end[6] * a
+    a = factors[6] * R + factors[7] * start.R[i] + factors[8] * start.a[i]
+    p = factors[9] * start.p[i] + factors[10] * start.a[i] + factors[11] * before.a[i] + factors[12] * a
     return float(length.numbers[0] * p)
 
 
@@ -588,22 +580,23 @@ def end_modes(march: March, length: Length, start: AnyState, before: AnyState, a
     a_end = after.a
     R_end = after.R
     weight = length.numbers[3]
-    end = length.end
-    of_R = end[0]
-    of_R_0 = end[1]
-    of_a_0 = end[2]
-    by_p_0 = end[3]
-    by_a_0 = end[4]
-    by_a_before = end[5]
-    by_a = end[6]
+    factors = length.factors
+    of_R = factors[6]
+    of_R_0 = factors[7]
+    of_a_0 = factors[8]
+    by_p_0 = factors[9]
+    by_a_0 = factors[10]
+    by_a_before = factors[11]
+    by_a = factors[12]
     more = of_R_0 != 0.0 or of_a_0 != 0.0 or by_a_before != 0.0  # than Newmark's scheme takes
     dt2 = step * step
     impulse = length.numbers[0] * dt2
     for i in range(len(x)):
-        z = z_before[i] + x[i] + weight * inverse[i] * pushed[i]
+        push = pushed[i]
+        z = z_before[i] + x[i] + weight * inverse[i] * push
         R = dt2 * (load[i] - k[i] * z)
         if averages:
-            R += dt2 * pushed[i]
+            R += dt2 * push
         a = R
         p = by_p_0 * p_0[i] + by_a_0 * a_0[i]
         if more:
@@ -611,7 +604,7 @@ def end_modes(march: March, length: Length, start: AnyState, before: AnyState, a
             p += by_a_before * a_before[i]
         p += by_a * a
         if not averages:
-            p += impulse * pushed[i]
+            p += impulse * push
         z_end[i] = z
         p_end[i] = p
         a_end[i] = a
@@ -711,6 +704,7 @@ def steps_by(
         keep(march, state, history.motion, 0)
         keep_rows(march, state, history, 0)
         scheme = march.scheme
+        slips = history.slip.shape[1]
         for number in range(steps):
             row = number + 1
             remainder = 1.0
@@ -740,11 +734,11 @@ def steps_by(
                     continue
                 if len(history.sums) > 0:
                     account(march, state, after, course, part, history.sums[row])
-                n = len(after.path) - history.slip.shape[1]
-                for r in range(n, len(after.path)):
-                    history.slip[row, r - n] += after.rows.slip[r]
+                n = len(after.path) - slips
+                for k in range(slips):
+                    history.slip[row, k] += after.rows.slip[n + k]
                     if scheme.stages == 2:
-                        history.slip[row, r - n] += march.between.rows.slip[r]
+                        history.slip[row, k] += march.between.rows.slip[n + k]
                 state, after = after, state
                 if ratio == remainder:
                     break
