@@ -21,8 +21,8 @@ from dda.bodies.column_step import (
     Observed,
 )
 from dda.contact.band import find_in_band
-from dda.contact.rows import INSIDE, LOWER, Laws, flexibility_for, rows_of
-from dda.march.step import Body, Course, March, length_for, move_rows, write_flexibility
+from dda.contact.rows import INSIDE, LOWER, Laws, rows_of
+from dda.march.step import Body, Course, March, move_rows, write_flexibility
 from dda.model.arrays import Array, ArrayPair
 from dda.scheme.newmark import Scheme, late_momentum
 
@@ -118,20 +118,20 @@ def body_of(column: Column, blocks: Blocks) -> Body:
     """Return the column in its modes; row 0 has no weights where nothing is below."""
     n = len(blocks.root)
     modes = blocks.modes
-    width = min(2 * modes, modes * n)
     mean = 1 / blocks.root
     k = np.zeros(modes * n)
     k[modes - 1 :: modes] = np.where(blocks.half > 0, stiffness(column) / (blocks.root * blocks.root), 0.0)
-    weight = np.zeros((n, width))
-    weight[0, :modes] = (mean[0], -blocks.half[0])[:modes]
-    tops, feet = ((sign * mean, -blocks.half)[:modes] for sign in (-1, 1))
-    weight[1:] = np.column_stack([*(part[:-1] for part in tops), *(part[1:] for part in feet)])[:, :width]
-    ground = np.array([(0.0, float(column.rests_on_base))])
+    weight = np.zeros((n, 4))
+    weight[0, :2] = mean[0], -blocks.half[0]
+    weight[1:] = np.column_stack([-mean[:-1], -blocks.half[:-1], mean[1:], -blocks.half[1:]])
+    weight = weight[:, : 2 * n : 3 - modes].copy()
+    ground = np.zeros((n, 2))
+    ground[0, 1] = column.rests_on_base
     if blocks.base in (ABSENT, CARRIED):
         weight[0] = 0.0
     if blocks.base == CARRIED:
         weight[1:2, :modes] = 0.0
-        ground = np.array([(0.0, 0.0), (0.0, 1.0)])[:n]
+        ground[:2, 1] = np.arange(min(n, 2))
     loads = np.zeros((2 if blocks.base in (ROW, ABSENT) else 4, modes * n))  # the motion below is no modal load
     loads[0, ::modes] = -column.gravity * blocks.root
     loads[1, -modes:] = (-mean[-1], -blocks.half[-1])[:modes]
@@ -139,7 +139,7 @@ def body_of(column: Column, blocks: Blocks) -> Body:
         loads[0, 0] /= 2 * blocks.root[0] * blocks.root[0] / blocks.mass
         loads[3, 0] = -blocks.mass / 6 * mean[0]
     first = np.maximum(modes * (np.arange(n) - 1), 0)
-    return Body(k, loads, np.zeros(len(loads)), first, weight, ground, np.ones(len(k)))
+    return Body(k, loads, np.zeros(len(loads)), first, weight, ground, min(n, 2), np.ones(len(k)))
 
 
 def laws_of(column: Column, solve_limit: int | None, bonded: bool) -> Laws:
@@ -195,8 +195,7 @@ def start_of(column: Column, scheme: Scheme, drive: Drive, settled: bool, march:
     base_speed = float(drive.velocity[0]) if column.rests_on_base else 0.0
     welds = rigid & ~opens & np.isinf(laws.upper)  # their blocks get a common velocity at once
     speed += B.T @ rigid_forces(march, speed, base_speed, welds, np.zeros(len(opens)))
-    opening = blocks.gap.copy()
-    opening[: len(body.ground)] -= body.ground[:, 1] * drive.displacement[0]
+    opening = blocks.gap - body.ground[:, 1] * drive.displacement[0]
     # springs have the forces of the gaps; rigid contacts, and welds, have none before the accelerations are known
     spring = laws.compliance > 0
     force = np.clip(np.where(spring, -opening / np.where(spring, laws.compliance, 1.0), 0.0), laws.lower, laws.upper)
@@ -263,7 +262,7 @@ def rigid_forces(march: March, rates: Array, base: float, unknown: Array, force:
         opens=np.where(unknown, march.laws.opens, 0),
         most=0,
     )
-    length = length_for(len(rates), flexibility_for(n, True))
+    length = march.last.part  # of which no stage of a column is made: its s is one
     write_flexibility(march, 1.0, length)
     march.work.q[:] = row_rates(march, rates, base)
     after = rows_of(force, unknown)
@@ -276,8 +275,7 @@ def row_rates(march: March, rates: Array, base: float) -> Array:
     # no product of a library, whose fused sums tear apart blocks that fall alike
     moved = np.zeros(len(march.body.first))
     move_rows(march.body, rates, moved)
-    moved[: len(march.body.ground)] -= march.body.ground[:, 1] * base
-    return moved
+    return np.asarray(moved - march.body.ground[:, 1] * base)
 
 
 def static(column: Column, blocks: Blocks, laws: Laws, base: float) -> ArrayPair:

@@ -54,9 +54,9 @@ from dda.march.step import (
     coupling,
     end_modes,
     end_paths,
+    free_end,
     free_modes,
     free_rows,
-    free_velocity,
     kept_discount,
     move_rows,
     prescribe,
@@ -135,23 +135,21 @@ def make_column_stage(
     if outcome != FOUND:
         return outcome, solves
     push_modes(march, rows.force)
-    end_modes(march, length, start, before, after)
+    end_modes(march, length, start, before, after, len(march.body.k))
     if march.method.base == SPRUNG:
         end_surface(march, stage, length, after)
     end_paths(march, length.flexible, before, after)
     place_blocks(march, after)
     if solves > 1:
-        was = before.rows.state
-        for r in range(len(was)):
-            if rows.state[r] != was[r]:
+        for r in range(len(rows.state)):
+            if rows.state[r] != before.rows.state[r]:
                 march.tally[0] += 1
     return outcome, solves
 
 
 def prescribe_instants(march: March, course: Course, stage: StageRoom, part: Part) -> None:
-    """Write what `prescribe` does in a whole step, whose stages end at the instants of the course."""
-    stages = march.scheme.stages
-    instant = int(part.begun) * stages + (stages if stage.numbers.end == 1 else 1)
+    """Write what `prescribe` does, for a course whose instants are the ends of all stages: no step is ever cut."""
+    instant = march.scheme.stages * int(part.begun) + (1 if stage.numbers.begin == 0 else 2)
     copy(course.value[instant - 1], march.room.start)
     copy(course.value[instant], march.room.end)
 
@@ -178,11 +176,11 @@ def make_linear_stage(
     prescribe_instants(march, course, stage, part)
     room.load[:] = room.end[2:] @ body.loads
     by = length.factors
-    moving = by[0] * start.p + by[1] * start.a + by[2] * start.R + by[3] * before.p + by[4] * before.a
-    room.x[:] = length.inverse * (moving + by[5] * (room.load - body.k * before.z))
+    moving = by[0] * start.p + (by[1] + by[6]) * start.a + by[2] * before.p + by[3] * before.a + by[5] * start.R
+    room.x[:] = length.inverse * (moving + by[4] * (room.load - body.k * before.z))
     modes = body.first[:, None] + np.arange(body.weight.shape[1])  # that each row feels
-    march.work.q[:] = before.rows.opening + np.einsum("rm,rm->r", body.weight, room.x[modes])
-    march.work.q[: len(body.ground)] -= body.ground[:, 1] * (room.end[1] - room.start[1])
+    moved = np.einsum("rm,rm->r", body.weight, room.x[modes]) - body.ground[:, 1] * (room.end[1] - room.start[1])
+    march.work.q[:] = before.rows.opening + moved
     hold_base(march, stage, length, start, before, after)
     W = length.flexible.W
     force = dptsv(W[0] + march.laws.compliance, W[1, :-1], -march.work.q)[2]
@@ -191,8 +189,8 @@ def make_linear_stage(
     after.rows.opening[:] = -march.laws.compliance * force
     after.z[:] = before.z + room.x + length.numbers[3] * length.inverse * room.pushed
     after.R[:] = march.scheme.step**2 * (room.load - body.k * after.z + room.pushed)
-    after.a[:] = by[6] * after.R + by[7] * start.R + by[8] * start.a
-    after.p[:] = by[9] * start.p + by[10] * start.a + by[11] * before.a + by[12] * after.a
+    after.a[:] = by[7] * after.R + by[8] * start.R + by[9] * start.a
+    after.p[:] = by[10] * start.p + by[11] * start.a + by[12] * before.a + by[13] * after.a
     if blocks.base == SPRUNG:
         end_surface(march, stage, length, after)
     lowest, below = lowest_face(march, after)
@@ -207,7 +205,7 @@ def hold_base(
 ) -> None:
     """Make the rows of what is below the column, and welds of an explicit stage, what they are."""
     if march.method.base == HALF_SPACE:
-        free_half_space(march, stage, length, start, before)
+        free_half_space(march, stage, length, start, before, after)
     elif march.method.base == SPRUNG:
         free_surface(march, stage, length, start, before, after)
     if length.numbers[3] == 0:
@@ -251,14 +249,13 @@ def free_surface(
     It leaves what is known of h times the surface's velocity in `after`.
     """
     numbers = stage.numbers
-    ratio = length.numbers[0]
     h = length.numbers[2]
-    p = length.numbers[1] * ratio * start.surface[0]
-    a = ratio * ratio * start.surface[1]
-    a_before = ratio * ratio * before.surface[1]
+    p = length.numbers[1] * start.surface[0]
+    a = start.surface[1]
+    a_before = before.surface[1]
     late = numbers.alpha / numbers.delta
     after.surface[0] = velocity_corrector(numbers, p, a, a_before, 0.0)
-    moved = predictor(numbers, p, a, ratio * before.surface[0], a_before)
+    moved = predictor(numbers, p, a, before.surface[0], a_before)
     march.work.q[0] -= moved + late * (2 * h * march.room.end[VELOCITY] - after.surface[0])
     own = length.numbers[3] * coupling(march.body, length.inverse, 0, 0)
     length.flexible.W[0][0] = own + late * h / march.method.impedance
@@ -266,17 +263,18 @@ def free_surface(
 
 def end_surface(march: March, stage: StageRoom, length: Length, after: AnyState) -> None:
     """Write the motion of the surface that its force N_0 = zeta (2 v - V) has."""
-    ratio = length.numbers[0]
     h = length.numbers[2]
     p = h * (2 * march.room.end[VELOCITY] - after.rows.force[0] / march.method.impedance)
-    after.surface[1] = (p - after.surface[0]) / stage.numbers.delta / (ratio * ratio)
-    after.surface[0] = p / ratio
+    after.surface[1] = (p - after.surface[0]) / stage.numbers.delta
+    after.surface[0] = p
 
 
 # ---- feet that are no contacts, and welds ----------------------------------------------------------------------------
 
 
-def free_half_space(march: March, stage: StageRoom, length: Length, start: AnyState, before: AnyState) -> None:
+def free_half_space(
+    march: March, stage: StageRoom, length: Length, start: AnyState, before: AnyState, after: AnyState
+) -> None:
     """Make the lowest row that of a half-space, whose force follows the velocity of the foot.
 
     That is v* + late h B_0 s^-1 B' N, with v* its velocity without forces; the row is over `late`, as the others are.
@@ -285,8 +283,9 @@ def free_half_space(march: March, stage: StageRoom, length: Length, start: AnySt
     numbers = stage.numbers
     h = length.numbers[2]
     speed = 0.0
+    free_end(march, length, start, before, after, march.method.modes)
     for i in range(march.method.modes):
-        speed += body.weight[0][i] * free_velocity(march, length, start, before, i) / h
+        speed += body.weight[0][i] * after.p[i] / march.scheme.step
     weight = weight_of_welds(length)
     own = weight / (numbers.delta * (1 - numbers.af) / (1 - numbers.am) * h)
     length.flexible.W[0][0] = weight * coupling(body, length.inverse, 0, 0) + own / march.method.impedance
@@ -316,7 +315,7 @@ def hold_welds(march: March, length: Length, before: AnyState) -> None:
     for r in range(len(q)):
         if laws.compliance[r] == 0 and not (r == 0 and march.method.base == HALF_SPACE):
             q[r] = room.free[r]
-            if r < len(body.ground) and body.ground[r][1] != 0:
+            if body.ground[r][1] != 0:
                 q[r] -= h2 * room.end[ACCELERATION]
             W[0][r] = h2 * coupling(body, length.inverse, r, r)
     for r in range(len(q) - 1):
@@ -374,7 +373,7 @@ def account_column(march: March, state: AnyState, after: AnyState, course: Cours
     if base == WELDED:
         prescribe(march, course, march.first, part)
         momentum = march.method.mass / 6 * march.room.start[VELOCITY] * state.p[0] / march.method.root[0]
-        sums[DAMPING] += (1 - march.scheme.gg**part.ratio) * momentum / march.scheme.step
+        sums[DAMPING] += (1 - march.scheme.gg) * momentum / march.scheme.step
     if base != ROW and base != ABSENT:
         add_feet(march, state, after, course, part, sums)
 
@@ -400,7 +399,7 @@ def add_foot(
         acceleration = (1 - late) * room.start[ACCELERATION] + late * room.end[ACCELERATION]
         sums[GIVEN] += blocks.mass / 6 * acceleration * (after.z[0] - before.z[0]) / blocks.root[0]
     sums[GIVEN] += force * moved
-    sums[IMPULSE] += force * march.scheme.step * part.ratio * (stage.numbers.end - stage.numbers.begin)
+    sums[IMPULSE] += force * march.scheme.step * (stage.numbers.end - stage.numbers.begin)
 
 
 def keep_observed(march: March, state: AnyState, kept: Matrix, number: int) -> bool:
@@ -415,7 +414,6 @@ def keep_observed(march: March, state: AnyState, kept: Matrix, number: int) -> b
     discount = kept_discount(march.scheme, number)
     columns = len(observed.kind)
     modes = blocks.modes
-    carried = 1 if blocks.base >= WELDED else 0  # blocks whose feet move as the base does
     for k in range(columns):
         kind = observed.kind[k]
         i = observed.place[k]
@@ -423,12 +421,13 @@ def keep_observed(march: March, state: AnyState, kept: Matrix, number: int) -> b
         upper = observed.upper[k]
         mean = modes * i
         stretch = mean + modes - 1
+        on_base = i == 0 and blocks.base >= WELDED
         if kind == MODES:
-            value = lower * state.z[mean] + upper * (room.end[1] if i < carried else state.z[stretch])
+            value = lower * state.z[mean] + upper * (room.end[1] if on_base else state.z[stretch])
         elif kind == RATES:
             value = lower * (discount * state.p[mean] + lag * state.a[mean]) / march.scheme.step
             rate = (discount * state.p[stretch] + lag * state.a[stretch]) / march.scheme.step
-            value += upper * (room.end[VELOCITY] if i < carried else rate)
+            value += upper * (room.end[VELOCITY] if on_base else rate)
         elif kind == FOOT:
             value = force_of_base(march, state, room.end)
         elif kind == FORCES:
@@ -441,8 +440,8 @@ def keep_observed(march: March, state: AnyState, kept: Matrix, number: int) -> b
     row[columns + SWITCHES] = march.tally[0]
     march.tally[0] = 0.0
     if len(row) > columns + 1:
-        for i in range(len(room.p)):
-            room.p[i] = discount * state.p[i] + lag * state.a[i]
+        for i in range(len(room.pushed)):
+            room.pushed[i] = discount * state.p[i] + lag * state.a[i]
         keep_record(march, state, row, columns)
     return math.isfinite(state.z[len(state.z) - blocks.modes])  # to which all others add
 
@@ -461,10 +460,10 @@ def keep_record(march: March, state: AnyState, row: Vector, columns: int) -> Non
     furthest = 0.0
     contacts = 0
     opened = 0
-    moving = half_square(march.room.p) / (step * step)
+    moving = half_square(march.room.pushed) / (step * step)
     if blocks.base >= WELDED:
         foot = march.room.end[VELOCITY]
-        top = foot if blocks.base == CARRIED else march.room.p[0] / blocks.root[0] / step
+        top = foot if blocks.base == CARRIED else march.room.pushed[0] / blocks.root[0] / step
         momentum = step * blocks.mass * (foot / 2 + top / 6)
         moving += blocks.mass / 6 * foot * (foot + top)
         if blocks.base == CARRIED:
@@ -474,7 +473,7 @@ def keep_record(march: March, state: AnyState, row: Vector, columns: int) -> Non
         mean = blocks.modes * i
         last = mean + blocks.modes - 1
         strained += march.body.k[last] * state.z[last] * state.z[last]
-        momentum += blocks.root[i] * march.room.p[mean]
+        momentum += blocks.root[i] * march.room.pushed[mean]
         energy = laws.compliance[i] * rows.force[i] * rows.force[i]
         if i == 0 and blocks.base == WELDED:
             strained += energy

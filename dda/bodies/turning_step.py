@@ -36,7 +36,7 @@ from dda.march.step import (
     Part,
     StageRoom,
     add_push,
-    coasted,
+    coast,
     end_modes,
     free_modes,
     kept_discount,
@@ -251,7 +251,6 @@ def predict(
     """Write what is known of a stage before its contact: the stage without it, and where the corners come from."""
     rolling = march.method
     room = march.room
-    numbers = stage.numbers
     prescribe(march, course, stage, part)
     free_modes(march, length, start, before)
     place_corners(rolling, before.q, before.Q, room.start, rolling.rest)
@@ -260,9 +259,7 @@ def predict(
     place_corners(rolling, rolling.q, rolling.turn.end, room.end, rolling.place)
     for k in range(len(rolling.near)):
         rolling.near[k] = min(rolling.rest[k][1], rolling.place[k][1])
-    share = numbers.end - numbers.begin
-    for i in range(len(room.pushed)):
-        room.pushed[i] = coasted(length, start, share, i)
+    coast(stage, length, start, room.pushed)
     by_modes(rolling, room.pushed, rolling.guess)
 
 
@@ -491,7 +488,7 @@ def accept(
     if near > 0:
         set_rows(march, before, near)
         add_push(march, rolling.after.force)
-    end_modes(march, length, start, before, after)
+    end_modes(march, length, start, before, after, len(march.body.k))
     move(rolling, before, rolling.D)
     copy(rolling.q, after.q)
     copy_matrix(rolling.turn.end, after.Q)

@@ -141,7 +141,7 @@ def add_contact_losses(
     Parameters
     ----------
     ground
-        (g, 2) what a unit displacement of the base takes from the first openings.
+        (m, 2) what a unit displacement of the base takes from the openings.
     late
         Weight of the forces at the end beside those at the beginning.
     """
@@ -176,9 +176,8 @@ def add_contact_losses(
         else:
             switching += lost
         sums[FRICTION] += friction
-        if r < len(ground):
-            sums[GIVEN] += force * (ground[r][0] * along + ground[r][1] * away)
-            sums[IMPULSE] += length * force * ground[r][1]
+        sums[GIVEN] += force * (ground[r][0] * along + ground[r][1] * away)
+        sums[IMPULSE] += length * force * ground[r][1]
     sums[ALGORITHMIC] += keeping
     sums[SWITCHING] += switching
 

@@ -15,7 +15,6 @@ from dda.march.account import account, add_bulk_loss, add_damping, half_square
 from dda.march.energy import ALGORITHMIC, CONTACT, GIVEN, IMPULSE
 from dda.march.step import (
     Course,
-    Length,
     March,
     Part,
     StageRoom,
@@ -136,18 +135,18 @@ def make_impact_stage(
     length = length_of(march, stage, part.ratio)
     h = length.numbers[2]
     theta = math.sqrt(stage.numbers.alpha)
+    discount = length.numbers[0] * length.numbers[1]  # of p: u times the length
     prescribe(march, course, stage, part)
-    discount(march, length, start)
     mean_loads(march, theta)
     write_loads(march)
     for i in range(len(body.k)):
-        held = room.load[i] - body.k[i] * (before.z[i] + theta * room.p[i])
+        held = room.load[i] - body.k[i] * (before.z[i] + theta * discount * start.p[i])
         room.x[i] = length.inverse[i] * h * h * held
     rows = after.rows
-    move_rows(body, room.p, room.free)
+    move_rows(body, start.p, room.free)
     move_rows(body, room.x, room.force)
     for r in range(len(rows.force)):
-        rate = room.free[r] / h
+        rate = discount * room.free[r] / h
         end = rate + room.force[r] / h
         near = before.rows.opening[r] + h * rate / 2 <= 0
         rows.state[r] = INSIDE if near else LOWER
@@ -157,8 +156,9 @@ def make_impact_stage(
         return outcome, solves
     push_modes(march, rows.force)
     for i in range(len(body.k)):
-        end = room.p[i] + room.x[i] + h * length.inverse[i] * room.pushed[i]
-        room.x[i] = theta * end + (1 - theta) * room.p[i]
+        begun = discount * start.p[i]
+        end = begun + room.x[i] + h * length.inverse[i] * room.pushed[i]
+        room.x[i] = theta * end + (1 - theta) * begun
         after.z[i] = before.z[i] + room.x[i]
         after.p[i] = end / length.numbers[0]
         after.a[i] = 0.0
@@ -168,12 +168,6 @@ def make_impact_stage(
         rows.force[r] /= h
         after.path[r] = 0.0
     return FOUND, solves
-
-
-def discount(march: March, length: Length, start: State) -> None:
-    """Write u = gg v at the start of a step, times its length."""
-    for i in range(len(march.room.p)):
-        march.room.p[i] = length.numbers[1] * length.numbers[0] * start.p[i]
 
 
 def mean_loads(march: March, late: float) -> None:
@@ -196,21 +190,21 @@ def account_impact(march: March, state: State, after: State, course: Course, par
     length = length_of(march, march.last, part.ratio)
     h = length.numbers[2]
     theta = math.sqrt(march.last.numbers.alpha)
+    discount = length.numbers[0] * length.numbers[1]  # of p: u times the length
     add_damping(march, part, half_square(state.p) / (scheme.step * scheme.step), sums)
     prescribe(march, course, march.last, part)
-    discount(march, length, state)
     mean_loads(march, theta)
     stored = 0.0
     for i in range(len(body.k)):
         moved = after.z[i] - state.z[i]
-        room.x[i] = part.ratio * after.p[i] - room.p[i]
+        room.x[i] = part.ratio * after.p[i] - discount * state.p[i]
         stored += body.k[i] * moved * moved + room.x[i] * room.x[i] / (h * h)
         sums[GIVEN] += (room.end[2] - 1) * body.loads[0][i] * moved
-    move_rows(body, room.p, room.free)
+    move_rows(body, state.p, room.free)
     move_rows(body, room.x, room.force)
     for r in range(len(after.rows.force)):
         P = h * after.rows.force[r]
-        before = room.free[r] / h
+        before = discount * room.free[r] / h
         difference = room.force[r] / h
         sums[CONTACT] -= P * (before + difference / 2)
         sums[IMPULSE] += P

@@ -58,7 +58,7 @@ from dda.scheme.stage import Stage, implicit_weight, inertia_force, plain_stage,
 
 AnyState = Any  # `State`, or what has its fields
 Finder = Callable[..., Solved]
-POWERS = 1.0, 2.0, 2.0, 1.0, 2.0, 2.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0  # of a length, in `StageRoom.factors`
+POWERS = 1.0, 2.0, 1.0, 2.0, 2.0, 2.0, 2.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0  # of a length, in `StageRoom.factors`
 SHORTEST = 0.01  # shortest part of a step that a cut may leave
 
 
@@ -70,7 +70,8 @@ class Body(NamedTuple):
     stored: Vector  # (l,) share of each load that counts as energy of the load, the rest of its work as given
     first: Any  # (m,) first of the modes that a row of contact feels
     weight: Matrix  # (m, w) its opening by this and those that follow
-    ground: Matrix  # (g, 2) what a unit displacement of the base, along and away from itself, takes from the first ones
+    ground: Matrix  # (m, 2) what a unit displacement of the base, along and away from itself, takes from the openings
+    grounded: int  # rows, the first ones, from which it takes any
     mobility: Vector  # (n,) acceleration by a unit modal force; one, unless a body grows
 
 
@@ -90,7 +91,7 @@ class Length(NamedTuple):
     """What belongs to a stage of one length."""
 
     numbers: Vector  # (4,) length over dt, gg for it, length [s], weight of contact forces in z [s^2], 1 of impulses
-    factors: Vector  # (13,) those of a stage for it
+    factors: Vector  # (14,) those of a stage for it
     inverse: Vector  # (n,) 1/s
     flexible: Flexibility
 
@@ -99,8 +100,9 @@ class StageRoom(NamedTuple):
     """A stage of the scheme."""
 
     numbers: Stage  # with gg = 1: the velocity that it takes is discounted
-    factors: Vector  # (13,) in s times an increment, of p, a, R at the start, p, a of the stage before, a force [s^2];
-    # in a at its end, of R there, R and a at the start; in p, of p and a at the start, a before, a at its end
+    # in s times an increment, of p, a of the start, of these of the stage before, and of R at the end, R, a of the
+    # start; of these three in a at the end; in p there, of p, a of the start, a before, a at the end
+    factors: Vector  # (14,)
     whole: Length  # of a whole step
     part: Length  # of the last part of a step
 
@@ -122,7 +124,6 @@ class Room(NamedTuple):
     start: Vector  # (2 + l,) displacement of the base [m], and the shares of the loads, at the start of a stage
     end: Vector  # the same at its end
     shares: Vector  # (l,) by which the loads are written
-    p: Vector  # (n,) velocities of a rule of contact, or where they are kept
     x: Vector  # (n,) increments without contact forces
     load: Vector  # (n,) loads at the end of the stage
     pushed: Vector  # (n,) B' lambda
@@ -212,8 +213,8 @@ def march_of(
     n = len(body.k)
     m = len(laws.compliance)
     rooms = [stage_room(plain_stage(stage), n, m, laws.banded) for stage in scheme.stages]
-    vectors = [np.zeros(2 + len(body.loads)) for _ in range(2)] + [np.full(len(body.loads), np.nan)]
-    vectors += list(np.zeros((4, n))) + list(np.zeros((2, m)))
+    loads = len(body.loads)
+    vectors = [*np.zeros((2, 2 + loads)), np.full(loads, np.inf), *np.zeros((3, n)), *np.zeros((2, m))]
     march = March(
         body=body,
         laws=laws,
@@ -240,17 +241,12 @@ def state_of(modes: int, opening: Array, state: Any) -> State:
 
 def stage_room(stage: Stage, modes: int, rows: int, banded: bool) -> StageRoom:
     """Return a stage, with room for what belongs to it."""
-    lengths = [length_for(modes, flexibility_for(rows, banded)) for _ in range(2)]
+    flexible = [flexibility_for(rows, banded) for _ in range(2)]
+    lengths = [Length(np.zeros(4), np.zeros(len(POWERS)), np.ones(modes), part) for part in flexible]
     ahead = predictor(stage, *np.eye(4))
     held = inertia_force(stage, *np.eye(3))
     late = velocity_corrector(stage, *np.eye(4))
-    free = ahead[0], ahead[1] + stage.alpha * held[2], stage.alpha * held[1], *ahead[2:], stage.alpha * held[0]
-    return StageRoom(stage, np.concatenate([free, held, late]), *lengths)
-
-
-def length_for(modes: int, flexible: Flexibility) -> Length:
-    """Return room for what belongs to a length."""
-    return Length(np.zeros(4), np.zeros(len(POWERS)), np.ones(modes), flexible)
+    return StageRoom(stage, np.concatenate([ahead, stage.alpha * held, held, late]), *lengths)
 
 
 def course_of(motion: BaseMotion | None, ramp: float) -> Course:
@@ -304,7 +300,12 @@ def set_modes(march: March, stage: StageRoom, ratio: float, length: Length) -> f
         length.numbers[1] = march.scheme.gg**ratio
         length.numbers[2] = h
         length.numbers[3] = weight
-        set_factors(march, stage, length)
+        factors = length.factors
+        for k in range(len(factors)):
+            factors[k] = stage.factors[k] * ratio ** POWERS[k]
+        factors[0] *= length.numbers[1]
+        factors[4] *= march.scheme.step * march.scheme.step
+        factors[10] *= length.numbers[1]
     for i in range(len(body.k)):
         length.inverse[i] = 1 / (1 + implicit * h * h * body.k[i])
     if march.laws.retardation > 0:  # forces change y + tau y', by which these springs press
@@ -313,16 +314,6 @@ def set_modes(march: March, stage: StageRoom, ratio: float, length: Length) -> f
         length.flexible.own[0] = weight / retarded if weight > 0 else 0.0
         weight = retarded
     return weight
-
-
-def set_factors(march: March, stage: StageRoom, length: Length) -> None:
-    """Write the factors of the scheme's formulas for a length, whose state is in units of dt."""
-    factors = length.factors
-    for k in range(len(factors)):
-        factors[k] = stage.factors[k] * length.numbers[0] ** POWERS[k]
-    factors[0] *= length.numbers[1]
-    factors[5] *= march.scheme.step * march.scheme.step
-    factors[9] *= length.numbers[1]
 
 
 def write_flexibility(march: March, weight: float, length: Length) -> None:
@@ -372,10 +363,11 @@ def move_rows(body: Body, x: Vector, out: Vector) -> None:
         out[r] = total
 
 
-def coasted(length: Length, start: AnyState, share: float, i: int) -> float:
-    """Return the way of a mode in a share of a length at the acceleration of its start."""
-    way = share * length.numbers[0]
-    return float(length.numbers[1] * way * start.p[i] + way * way * start.a[i] / 2)
+def coast(stage: StageRoom, length: Length, start: AnyState, out: Vector) -> None:
+    """Write the ways of the modes in a stage at the accelerations of the start."""
+    way = (stage.numbers.end - stage.numbers.begin) * length.numbers[0]
+    for i in range(len(out)):
+        out[i] = length.numbers[1] * way * start.p[i] + way * way * start.a[i] / 2
 
 
 def push_modes(march: March, force: Vector) -> None:
@@ -490,11 +482,11 @@ def free_modes(march: March, length: Length, start: AnyState, before: AnyState) 
     a = before.a
     factors = length.factors
     by_p_0 = factors[0]
-    by_a_0 = factors[1]
-    by_R_0 = factors[2]
-    by_p = factors[3]
-    by_a = factors[4]
-    by_force = factors[5]
+    by_a_0 = factors[1] + factors[6]
+    by_p = factors[2]
+    by_a = factors[3]
+    by_force = factors[4]
+    by_R_0 = factors[5]
     more = by_R_0 != 0.0 or by_p != 0.0 or by_a != 0.0  # than Newmark's scheme takes
     write_loads(march)
     for i in range(len(k)):
@@ -516,10 +508,9 @@ def free_rows(march: March, before: AnyState) -> None:
     along = room.end[0] - room.start[0]
     away = room.end[1] - room.start[1]
     move_rows(body, room.x, free)
-    for r in range(len(ground)):
+    for r in range(body.grounded):
         if not (paired and r == 3):  # a base that moves leaves the difference of two ways alone
-            free[r] -= ground[r][0] * along
-            free[r] -= ground[r][1] * away
+            free[r] -= ground[r][0] * along + ground[r][1] * away
     if paired:
         mean = free[2]
         difference = free[3]
@@ -531,28 +522,23 @@ def free_rows(march: March, before: AnyState) -> None:
         q[r] = opening[r] + free[r]
 
 
-def free_velocity(march: March, length: Length, start: AnyState, before: AnyState, i: int) -> float:
-    """Return h v of a mode at the end of a stage without contact forces."""
-    room = march.room
-    step = march.scheme.step
-    factors = length.factors
-    R = step * step * (room.load[i] - march.body.k[i] * (before.z[i] + room.x[i]))
-    a = factors[6] * R + factors[7] * start.R[i] + factors[8] * start.a[i]
-    p = factors[9] * start.p[i] + factors[10] * start.a[i] + factors[11] * before.a[i] + factors[12] * a
-    return float(length.numbers[0] * p)
+def free_end(march: March, length: Length, start: AnyState, before: AnyState, after: AnyState, modes: int) -> None:
+    """Write the first modes at the end of a stage without contact forces."""
+    for i in range(modes):
+        march.room.pushed[i] = 0.0
+    end_modes(march, length, start, before, after, modes)
 
 
-def retard(march: March, stage: StageRoom, length: Length, start: State, before: State) -> None:
+def retard(march: March, stage: StageRoom, length: Length, start: State, before: State, after: State) -> None:
     """Add tau y' at the end of a stage without contact forces to the openings; a base moves evenly."""
     body = march.body
     room = march.room
     h = length.numbers[2]
-    for i in range(len(body.k)):
-        room.pushed[i] = free_velocity(march, length, start, before, i)
     late = march.work.late
-    move_rows(body, room.pushed, late)
+    free_end(march, length, start, before, after, len(body.k))
+    move_rows(body, after.p, late)
     for r in range(len(room.free)):
-        rate = late[r] / h
+        rate = late[r] / march.scheme.step
         for axis in range(2):
             moved = room.end[axis] - room.start[axis]
             rate -= body.ground[r][axis] * moved / (h * (stage.numbers.end - stage.numbers.begin))
@@ -560,8 +546,8 @@ def retard(march: March, stage: StageRoom, length: Length, start: State, before:
         march.work.q[r] += late[r]
 
 
-def end_modes(march: March, length: Length, start: AnyState, before: AnyState, after: AnyState) -> None:
-    """Write the modes at the end of a stage under the forces `room.pushed`."""
+def end_modes(march: March, length: Length, start: AnyState, before: AnyState, after: AnyState, modes: int) -> None:
+    """Write the first modes at the end of a stage under the forces `room.pushed`."""
     room = march.room
     step = march.scheme.step
     averages = march.scheme.averages
@@ -581,17 +567,17 @@ def end_modes(march: March, length: Length, start: AnyState, before: AnyState, a
     R_end = after.R
     weight = length.numbers[3]
     factors = length.factors
-    of_R = factors[6]
-    of_R_0 = factors[7]
-    of_a_0 = factors[8]
-    by_p_0 = factors[9]
-    by_a_0 = factors[10]
-    by_a_before = factors[11]
-    by_a = factors[12]
+    of_R = factors[7]
+    of_R_0 = factors[8]
+    of_a_0 = factors[9]
+    by_p_0 = factors[10]
+    by_a_0 = factors[11]
+    by_a_before = factors[12]
+    by_a = factors[13]
     more = of_R_0 != 0.0 or of_a_0 != 0.0 or by_a_before != 0.0  # than Newmark's scheme takes
     dt2 = step * step
     impulse = length.numbers[0] * dt2
-    for i in range(len(x)):
+    for i in range(modes):
         push = pushed[i]
         z = z_before[i] + x[i] + weight * inverse[i] * push
         R = dt2 * (load[i] - k[i] * z)
@@ -646,11 +632,11 @@ def stage_with(find: Finder) -> Finder:
         free_modes(march, length, start, before)
         free_rows(march, before)
         if march.laws.retardation > 0:
-            retard(march, stage, length, start, before)
+            retard(march, stage, length, start, before, after)
         outcome, solves = find(march, before.rows, length.flexible, after.rows)
         if outcome == FOUND:
             push_modes(march, march.work.mean)
-            end_modes(march, length, start, before, after)
+            end_modes(march, length, start, before, after, len(march.body.k))
             end_paths(march, length.flexible, before, after)
         return outcome, solves
 

@@ -23,7 +23,7 @@ from dda.march.step import (
     March,
     Part,
     StageRoom,
-    coasted,
+    coast,
     end_modes,
     free_modes,
     kept_discount,
@@ -132,9 +132,7 @@ def make_stage(
     laws = laws_for(march.laws, places.count[0])
     stand(plane, before.q)
     place_contacts(blocks, before.q, plane.ends, places)
-    share = stage.numbers.end - stage.numbers.begin
-    for i in range(len(plane.x)):
-        plane.x[i] = coasted(length, start, share, i)
+    coast(stage, length, start, plane.x)
     copy(before.p, after.p)
     copy(before.a, after.a)
     increments(blocks, before.q, plane.x, plane.chords, plane.new)
@@ -162,7 +160,7 @@ def make_stage(
             if outcome != FOUND:
                 return outcome, solves
             push_contacts(blocks, places, after.rows.force, room.pushed)
-        end_modes(march, length, start, before, after)
+        end_modes(march, length, start, before, after, len(march.body.k))
         for i in range(len(plane.x)):
             plane.x[i] = room.x[i] + length.numbers[3] * length.inverse[i] * room.pushed[i]
         increments(blocks, before.q, plane.x, plane.chords, plane.new)
