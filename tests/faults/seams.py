@@ -13,7 +13,7 @@ import fem_reference.exact.layers as layers
 import fem_reference.mesh.elasticity as elasticity
 from dda.bodies import block_system as system
 from dda.bodies import column_history as column_contacts
-from dda.bodies import column_march, column_step, gap_form, joints, subdivision
+from dda.bodies import column_march, gap_form, joints, subdivision
 from dda.bodies import glued_blocks as glued
 from dda.bodies import glued_step as system_step
 from dda.bodies import locked_block as solution
@@ -168,7 +168,7 @@ COLUMN_INERTIA = Seam(column_march, column_march.inertia)
 COLUMN_STIFFNESS = Seam(column_march, column_march.stiffness)
 COLUMN_BASE = Seam(column_march, column_march.impedance)
 COLUMN_SPRINGS = Seam(column_march, column_march.springs_of)
-COLUMN_VELOCITY = Seam(column_step, column_step.velocity_corrector)
+COLUMN_VELOCITY = Seam(march_step, march_step.velocity_corrector)
 CONTACT_BODY = Seam(column_contacts, column_contacts.body_of)
 CONTACT_COLUMN = Seam(dda_columns, dda_columns.solve_column)
 EVENTS_COLUMN = Seam(column_events, column_events.solve)
