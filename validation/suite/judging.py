@@ -49,7 +49,7 @@ class JudgedAnswer:
 
 @dataclass(frozen=True, eq=False)
 class JudgedSet:
-    """What one program answers and the judgement of each answer that can be judged, by problem."""
+    """The answers of one program, and the judgement of each that can be judged, by problem."""
 
     answers: AnswerSet
     judged: Mapping[str, JudgedAnswer]
@@ -91,7 +91,7 @@ def judged_sets(sets: Sequence[AnswerSet], progress: Progress) -> list[JudgedSet
     return judged_of_sets
 
 
-# ---- a solver's answers ---------------------------------------------------------------------------------------------
+# ---- a solver's answers ----
 
 
 def answers_of(name: str, problems: Sequence[Problem], progress: Progress) -> AnswerSet:
@@ -146,7 +146,7 @@ def _answer(solver: Solver, problem: Problem) -> Answer:
 
 
 def _ending(run: Run) -> tuple[Status, str]:
-    """Return the status of a run without a history to judge, and why."""
+    """Return the status of a run without a history, and why."""
     note = run.notes[-1] if run.notes else run.outcome.sentence
     if run.outcome in WRONG:
         sentence = run.outcome.sentence[0].lower() + run.outcome.sentence[1:].rstrip(".")
@@ -158,7 +158,7 @@ def _ending(run: Run) -> tuple[Status, str]:
 
 
 def _not_repeatable(history: History, again: History | None) -> Iterator[str]:
-    """Yield in a sentence how far a second run of a user's solver is from the first; nothing where it is the same."""
+    """Yield how far a second run of a user's solver is from the first; nothing where it is the same."""
     if again is None:
         yield "Not repeatable: a second run gave no history; the verdict is one of several."
         return

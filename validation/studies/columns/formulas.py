@@ -47,7 +47,7 @@ def jointed() -> Iterator[Scene]:
         yield case.model_copy(update={"name": f"{JOINT}-{strength:g}"})
 
 
-# ---- rows that are computed from finished cases ---------------------------------------------------------------------
+# ---- rows that are computed from finished cases ----
 
 
 def samples(scene: Scene, history: History) -> Metrics:

@@ -54,7 +54,7 @@ def at_rate() -> Scene:
     return closed.timed(base, gg_rate=closed.rate_for(base, TARGET))
 
 
-# ---- rows -----------------------------------------------------------------------------------------------------------
+# ---- rows ----
 
 
 def springs(case: Scene) -> Metrics:
@@ -140,7 +140,7 @@ def _held(step: float, _: Finished) -> Metrics:
     return {"damping": closed.first_damping(scene), "turn": spectra.dda_frequency(scene) * step}
 
 
-# ---- curves ---------------------------------------------------------------------------------------------------------
+# ---- curves ----
 
 
 def curves() -> Mapping[str, Any]:

@@ -77,7 +77,7 @@ def nothing(scenes: Sequence[Scene], finished: Finished) -> Annotations:
     return {"alarms": [], "budgets": []}
 
 
-# ---- orders ---------------------------------------------------------------------------------------------------------
+# ---- orders ----
 
 
 def _columns(history: History, every: int = 1) -> dict[str, Array]:

@@ -62,7 +62,7 @@ def swept() -> list[Scene]:
     return [pair[0] for name in BY_STRAIN + BY_LOAD for pair in pairs_of(name)[::2]]
 
 
-# ---- two histories -------------------------------------------------------------------------------------------------
+# ---- two histories ----
 
 
 def in_plane(plane: History, column: str) -> Array:
@@ -135,7 +135,7 @@ def _number(value: Value) -> float:
     return value
 
 
-# ---- bands ----------------------------------------------------------------------------------------------------------
+# ---- bands ----
 
 
 def largest_coordinate(case: Scene) -> float:

@@ -60,7 +60,7 @@ COLUMN_EVENTS = ("methods-column-exact", "column-events")
 IMPLICIT = tuple(scheme for scheme in METHODS if scheme.group != "explicit")  # what a rigid block's own strain allows
 FRICTIONAL = tuple(scheme for scheme in IMPLICIT if scheme.id != "conserving")  # conserving contact has no friction
 
-# ---- scenes ---------------------------------------------------------------------------------------------------------
+# ---- scenes ----
 
 
 def varied(
@@ -230,7 +230,7 @@ def exact_cases() -> tuple[tuple[str, str], ...]:
     return tuple((case.name, "block-events") for case in opened_exactly().values())
 
 
-# ---- what is derived from the runs ----------------------------------------------------------------------------------
+# ---- what is derived from the runs ----
 
 
 def locked_error(case: Scene, history: History) -> Metrics:
@@ -419,7 +419,7 @@ def _short(value: float) -> float | None:
     return significant(value, 5) if math.isfinite(value) else None
 
 
-# ---- bands ----------------------------------------------------------------------------------------------------------
+# ---- bands ----
 
 
 def damping_ratios(case: Scene) -> Bands:

@@ -35,7 +35,7 @@ SOFT_SCENE = "plates-glue"
 Levels = Sequence[tuple[Scene, Row]]
 
 
-# ---- what is exact --------------------------------------------------------------------------------------------------
+# ---- what is exact ----
 
 
 def exact(case: Scene) -> float:
@@ -100,7 +100,7 @@ def cells_of(case: Scene) -> int:
     return body.cells if body else 0
 
 
-# ---- rows and bands -------------------------------------------------------------------------------------------------
+# ---- rows and bands ----
 
 
 def parts(case: Scene, dda: Row, fem: Row | None = None) -> dict[str, float]:

@@ -27,7 +27,7 @@ SETTLED = 0.5  # s, from which on the weight has grown and its ringing has gone
 STANDS = 1e-3  # m/s: the springs still give way at that speed after two seconds at most
 
 
-# ---- two blocks on a slope ----------------------------------------------------------------------------------------
+# ---- two blocks on a slope ----
 
 
 def problem_of(scene: Scene) -> Pushing:
@@ -144,7 +144,7 @@ def _first_order(name: str) -> Band:
     return 1 - frequency * case.time.step, 1 + frequency * case.time.step
 
 
-# ---- two wedges ---------------------------------------------------------------------------------------------------
+# ---- two wedges ----
 
 
 def against_wedges(scene: Scene, history: History) -> Metrics:

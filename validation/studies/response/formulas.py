@@ -80,7 +80,7 @@ def answers() -> tuple[Answer, ...]:
     )
 
 
-# ---- under the pressure ---------------------------------------------------------------------------------------------
+# ---- under the pressure ----
 
 
 def row_name(solver: str, frequency: float) -> str:
@@ -136,7 +136,7 @@ def mesh_gates() -> Iterator[Gate]:
                 yield gate(answer.name, row_name("fem", f), f"{part}.mesh", about(mesh, half), why)
 
 
-# ---- stepped on a base that vibrates --------------------------------------------------------------------------------
+# ---- stepped on a base that vibrates ----
 
 
 def steady(finished: Finished, scene: Scene, solver: str, frequency: float) -> dict[str, complex]:
@@ -207,7 +207,7 @@ def remaining_transients(scene: Scene, solver: str) -> float:
     return float(slowest ** (scene.time.steps - WINDOWS[_record(scene)]) + scene.time.steps * EPS + SOLVED)
 
 
-# ---- the damping that a step hides ----------------------------------------------------------------------------------
+# ---- the damping that a step hides ----
 
 
 def _hidden(frequency: float, finished: Finished) -> Metrics:
@@ -239,7 +239,7 @@ def damping_gates() -> Iterator[Gate]:
         yield gate(DAMPING, row, "damping.response", about(exact, float(closed_form.band[at])), why)
 
 
-# ---- viscous damping beside that of the step ------------------------------------------------------------------------
+# ---- viscous damping beside that of the step ----
 
 
 def viscous_damping_ratio(scene: Scene) -> float:
@@ -265,7 +265,7 @@ def viscous(case: Scene) -> Band:
     return about(viscous_damping_ratio(case), 1e-12)
 
 
-# ---- the study ------------------------------------------------------------------------------------------------------
+# ---- the study ----
 
 
 @functools.cache

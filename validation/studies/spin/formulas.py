@@ -18,7 +18,7 @@ from validation.theory.spectra import EPS
 STRAINS = ("ex", "ey", "gxy")
 
 
-# ---- blocks that spin -----------------------------------------------------------------------------------------------
+# ---- blocks that spin ----
 
 
 def errors_of(scene: Scene, history: History) -> dict[str, float]:
@@ -98,7 +98,7 @@ def steady(case: Scene) -> Bands:
     return {"ex": strain, "ey": strain, "area": (-relative, relative), "rate": (-last, last)}
 
 
-# ---- blocks that fly and slide --------------------------------------------------------------------------------------
+# ---- blocks that fly and slide ----
 
 
 def against_flight(scene: Scene, history: History) -> Metrics:
@@ -164,7 +164,7 @@ def distance(case: Scene) -> Band:
     return foot - within, foot + within
 
 
-# ---- blocks on a ledge ----------------------------------------------------------------------------------------------
+# ---- blocks on a ledge ----
 
 
 def turn_at_end(scene: Scene, history: History) -> tuple[float, float]:

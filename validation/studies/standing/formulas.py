@@ -56,7 +56,7 @@ def unbalanced(scene: Scene, history: History) -> Metrics:
     return {"share": share, "way": float(way), "result": "falls" if share > REST else "stands"} | limit_of(scene)
 
 
-# ---- limits -------------------------------------------------------------------------------------------------------
+# ---- limits ----
 
 
 def limit_of(scene: Scene) -> dict[str, Value]:
@@ -187,7 +187,7 @@ def bracket(case: Scene) -> Band | None:
     return verdict(case) if bounds.over_recursion < 0.81 or bounds.over_program > 1 else None
 
 
-# ---- columns that turn ----------------------------------------------------------------------------------------------
+# ---- columns that turn ----
 
 
 def turning(scene: Scene, history: History) -> Metrics:
@@ -237,7 +237,7 @@ def overlap_of_turning(case: Scene) -> Band:
     return -half, half
 
 
-# ---- three blocks that overhang -------------------------------------------------------------------------------------
+# ---- three blocks that overhang ----
 
 
 def seats(runs: Runs) -> Metrics:
@@ -274,7 +274,7 @@ def second_correction() -> Band:
     return -(first**2), first**2
 
 
-# ---- half a truss ---------------------------------------------------------------------------------------------------
+# ---- half a truss ----
 
 
 def at_rest(scene: Scene, history: History) -> Metrics:

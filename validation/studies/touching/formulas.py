@@ -28,7 +28,7 @@ TOUCHED = 1e-9  # m/s: a change of velocity by which a contact has pressed
 CORNERS = "corner-corner"  # as the query calls it
 
 
-# ---- who touches whom, and when -------------------------------------------------------------------------------------
+# ---- who touches whom, and when ----
 
 
 def query(scene: Scene, row: Row) -> Metrics:
@@ -95,7 +95,7 @@ def first_step(case: Scene) -> Band | None:
     return -1e-9, 1.0 + 1e-9 + (not 0 < round(touch.foot, 9) < 1)
 
 
-# ---- a square that lands on two corners -----------------------------------------------------------------------------
+# ---- a square that lands on two corners ----
 
 
 def landing(scene: Scene, history: History) -> Metrics:
@@ -145,7 +145,7 @@ def small_turn(case: Scene) -> Band:
     return -deep - own, deep + own
 
 
-# ---- a rectangle that lands on a corner -----------------------------------------------------------------------------
+# ---- a rectangle that lands on a corner ----
 
 
 def rebound(scene: Scene) -> tuple[FallingRectangle, Rebound]:

@@ -102,7 +102,7 @@ def travelling_gates() -> Iterator[Gate]:
         yield Gate(*name, "wave.left", *near(remaining_share, 20 * np.pi * EXACT), loss_reason)
 
 
-# ---- joints ---------------------------------------------------------------------------------------------------------
+# ---- joints ----
 
 
 @functools.cache
@@ -179,7 +179,7 @@ def order_gate() -> Gate:
     return gate(averaged()[-1].scene, "order", "joint.order", (1.9, 2.1), why)
 
 
-# ---- transmitting base ----------------------------------------------------------------------------------------------
+# ---- transmitting base ----
 
 
 @functools.cache
@@ -203,7 +203,7 @@ def base_gates() -> Iterator[Gate]:
         yield gate(wave.scene, wave.name, "base.reflected", about(float(abs(R)), JOINT), why)
 
 
-# ---- what the page draws --------------------------------------------------------------------------------------------
+# ---- what the page draws ----
 
 
 def curves() -> dict[str, list[dict[str, object]]]:
