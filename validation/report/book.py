@@ -121,7 +121,7 @@ class _NotDrawable(InputError):
 
 @contextmanager
 def _damage_named(results: Results, what: str) -> Iterator[None]:
-    """Name the part that damaged results, which no check detects, give no numbers for."""
+    """Name the part that results, damaged in a way that no check detects, give no numbers for."""
     try:
         yield
     except InputError:

@@ -268,7 +268,7 @@ def lead_panel(group: CaseGroup, columns: Sequence[str]) -> tuple[HistoryPanel |
 
 
 def _is_shown_whole(group: CaseGroup) -> bool:
-    """Whether that figure shows all: one case, its columns and steps."""
+    """Whether the opening figure of a page shows all: one case, its columns and steps."""
     columns = _columns(group)
     case, *others = group.cases
     if others or not 0 < len(columns) <= LEAD_COLUMNS:
