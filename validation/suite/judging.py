@@ -114,11 +114,10 @@ def answers_of(name: str, problems: Sequence[Problem], progress: Progress) -> An
         answer = _answer(solver, problem)
         if repeats and answer.history is not None and (answer.seconds or 0.0) < REPEATED_WITHIN:
             repeats -= 1
-            # An answer with how far a second run is from it, where it is not the same.
             again = completed(solver, problem.scene).history
             answer = replace(answer, warnings=(*answer.warnings, *_not_repeatable(answer.history, again)))
         answers.append(answer)
-    # What a solver says of itself, as a folder of answers states it; what it does not say is empty.
+    # What a solver says of itself, as a folder of answers states it.
     settings_name = "default" if name.endswith(DEFAULTS) else "chosen"
     if "program" not in about:
         settings_name = ""

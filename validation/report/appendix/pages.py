@@ -17,7 +17,7 @@ from validation.runs.results import Results
 def appendix(
     results: Results, groups: Groups, verdicts: Verdicts, studies: Sequence[str], gates: bool = False
 ) -> Blocks:
-    """Return words, alarms, parameters, provenance and references; of gates, if asked for, what they verify."""
+    """Return words, alarms, parameters, provenance and references; of gates, if asked for, what they verify too."""
     alarms = [*alarm_lines(groups)] if len(groups) > 1 else []  # of one scene on its own page
     return [
         Heading("Appendix"),

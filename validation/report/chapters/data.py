@@ -79,7 +79,7 @@ class CaseGroup:
         return max(of_pair, key=lambda c: float(c.get("window") or 0.0), default=None)
 
     def compared(self, case: CaseResults, solver: str, reference: str) -> Mapping[str, Any]:
-        """Return its metrics."""
+        """Return the metrics of this comparison."""
         comparison = self.comparison(case, solver, reference)
         return {} if comparison is None else comparison["metrics"]
 

@@ -215,7 +215,7 @@ def _curves(answer: JudgedAnswer) -> list[tuple[str, History | None]]:
 
 
 def numbers_table(numbers: Sequence[Quantity]) -> Table:
-    """Return the numbers of an answer beside the exact ones, and the edges between which they pass."""
+    """Return the numbers of an answer beside the exact ones, and the edges between which judged ones pass."""
     rows = []
     judged = any(number.band is not None for number in numbers)
     for number in numbers:

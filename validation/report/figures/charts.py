@@ -124,7 +124,6 @@ def chart_figure(
             if shared:
                 _share_y([axes for axes, _ in pairs])
             for axes, panel in pairs:
-                # Write the title, label and number the axes, draw hairlines.
                 axes.set(xlabel=panel.x_label, ylabel=panel.y_label)
                 axes.set_title(panel.title, pad=12.0 if has_marked_top else None)
                 _number_axis(axes, axes.xaxis, panel.logarithmic[0], panel.x_ticks)

@@ -81,7 +81,7 @@ def axes_grid(
 
 
 def size_of(axes: Axes) -> tuple[float, float]:
-    """Return the size of the axes [mm]."""
+    """Return width and height of the axes [mm]."""
     figure = axes.get_figure()
     if not isinstance(figure, Figure):
         raise ValueError("axes: must belong to a figure, got none")

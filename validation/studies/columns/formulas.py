@@ -74,7 +74,6 @@ def order(runs: Sequence[tuple[Scene, History, History]]) -> Metrics:
     """Return the order in the time step of the blocks' displacement error over the whole history."""
     errors = []
     for _, history, exact in runs:
-        # The largest error of the blocks' displacements over the largest displacement.
         names = [name for name in exact.columns if name.startswith("displacement")]
         differences = [np.max(np.abs(history.columns[name] - exact.columns[name])) for name in names]
         errors.append(float(max(differences) / max(np.max(np.abs(exact.columns[name])) for name in names)))

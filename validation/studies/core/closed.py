@@ -18,7 +18,7 @@ POINTS = 100  # a ratio changes smoothly with the step; where it is crossed is s
 
 
 def timed(scene: Scene, **values: Any) -> Scene:
-    """Return a scene with other, allowed values of time; weights are Newmark's."""
+    """Return a scene with other values of time, known to be allowed; weights are Newmark's."""
     weights = {name: values.pop(name) for name in ("alpha", "delta") if name in values}
     if weights:
         values |= {"scheme": "newmark", "rho_inf": None, "split": None}

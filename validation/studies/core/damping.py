@@ -57,7 +57,7 @@ def _worst(values: Metrics) -> Value:
 
 
 def operator_distance(scene: Scene, row: Row) -> Value:
-    """Distance of spectral radius and first damping ratio from the closed form at its frequency."""
+    """Distance of the first mode's spectral radius and damping ratio from the closed form at its frequency."""
     w, radius, xi = (row.metrics.get(f"mode1.{part}") for part in ("frequency", "spectral_radius", "damping"))
     if not (isinstance(w, float) and isinstance(radius, float)):
         return "not reported"

@@ -49,7 +49,7 @@ def paper() -> Scene:
 
 
 def at_rate() -> Scene:
-    """Return it under a discount that is held as the rate of the rule."""
+    """Return the paper's block under a discount held as the rate of the rule."""
     base = closed.average(paper())
     return closed.timed(base, gg_rate=closed.rate_for(base, TARGET))
 
@@ -124,7 +124,7 @@ def _stepped(step: float, _: Finished) -> Metrics:
 
 
 def stepped_frequency(scene: Scene) -> float:
-    """Return the frequency of DDA's first axial mode as stepped [rad/s]: |ln lambda| / dt."""
+    """Return the undamped frequency of DDA's first axial mode as stepped [rad/s]: |ln lambda| / dt."""
     return abs(cmath.log(spectra.roots(scene, spectra.dda_frequency(scene))[0])) / scene.time.step
 
 

@@ -105,13 +105,13 @@ def same_recursion(case: Scene) -> Band:
 
 
 def apart(case: Scene, dda: Row, fem: Row) -> Metrics:
-    """Return DDA's displacement at rest beside that of the elements, relative to it."""
+    """Return how far DDA's displacement at rest is from that of the elements, relative to it."""
     first, second = (or_nan(row.metrics.get("displacement.static")) for row in (dda, fem))
     return {"displacement": abs(first / second - 1)}
 
 
 def drift(levels: Sequence[tuple[Scene, Row]]) -> Metrics:
-    """Return by how much elements on point springs settle more with every halving of the mesh [m]."""
+    """Return by how much elements on corner springs settle more with every halving of the mesh [m]."""
     settled = [or_nan(fem.metrics.get("displacement.static")) for _, fem in levels]
     return {"halving": np.polyfit(np.log2([case.fem.per_side for case, _ in levels]), settled, 1)[0]}
 

@@ -61,7 +61,7 @@ def _nearest(step: float) -> Derived:
 
 
 def _beside(like_cases: tuple[Scene, ...], program_slide: float, finished: Finished) -> Metrics:
-    """Return the program's way less those of the springs, over what their spread and its digits allow."""
+    """Return how far the program's way is from those of the springs, over what their spread and digits allow."""
     histories = [finished.needed_history(case.name, DDA) for case in like_cases]
     slides = [float(history.columns["horizontal_displacement"][-1]) for history in histories]
     middle = (min(slides) + max(slides)) / 2

@@ -273,7 +273,7 @@ def order(scheme: Method, finished: Finished) -> Metrics:
 
 
 def slow_and_fast(finished: Finished) -> Metrics:
-    """Return how many times as many solves DDA's own scheme needs for 1 % as schemes of second order."""
+    """Return how many times as many solves DDA's own scheme needs for 1 % of the motion as schemes of second order."""
     slow = or_nan(order(method("constant"), finished)["solves to 1 %"])
     counts = {name: or_nan(order(method(name), finished)["solves to 1 %"]) for name in FAST}
     return {f"constant over {name}": slow / count for name, count in counts.items()}
@@ -316,7 +316,7 @@ def slid_distance(case: Scene, history: History) -> Metrics:
 
 
 def compared_map(scheme: Method, finished: Finished) -> Metrics:
-    """Return the largest difference of DDA's restitution from the map, and the greatest one."""
+    """Return the largest difference of DDA's restitution from the map, and the greatest restitution."""
     restitutions = []
     omegas = []
     phases = []
@@ -342,7 +342,7 @@ def rigid_map(scheme: Method, finished: Finished) -> Metrics:
 
 
 def cost_cases() -> dict[str, Scene]:
-    """Return composite schemes at p = 1E and 1 ms, and average acceleration at half, by method."""
+    """Return composite schemes at p = 1E and 1 ms, and average acceleration at half the step, by method."""
     compared = {scheme.id: expanded(locked(scheme))[2] for scheme in SCHEMES if scheme.group == "composite"}
     return compared | {"average": expanded(locked(method("average")))[-1]}
 
@@ -446,7 +446,7 @@ def solves_of_a_step(case: Scene) -> Band:
 
 
 def settled(case: Scene) -> float:
-    """Return twice the settlement under the weight, its part in the friction, over the distance slid."""
+    """Return 2 tan(phi) times the settlement under the weight, over the distance slid."""
     tangent = math.tan(math.radians(case.contact.friction or 0.0))
     return 2 * tangent * friction.settlement(case) / friction.run_out(case, case.time.duration)
 

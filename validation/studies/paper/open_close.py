@@ -125,7 +125,7 @@ def mean_solves(e: Evidence, cases: list[str]) -> list[float]:
 
 
 def essence(e: Evidence) -> dict[str, float]:
-    """Return how most solves and switches under (1/2, 1) change with the step."""
+    """Return how the most solves and the switches under (1/2, 1) change with the step."""
     most = [most_solves(e, [case]) for case in DAMPED]
     switches = [whole(e.number(case, "switches.count")) for case in DAMPED]
     loose, at_rest = mean_solves(e, LOOSE), mean_solves(e, DAMPED_STACKS)

@@ -223,7 +223,7 @@ def dominance_margin(scene: Scene, side: float, step: float, units_in_a_metre: f
 
 
 def conditionally_stable(e: Evidence) -> dict[str, float]:
-    """Return |lambda| of the contact mode 1 % about its limit, under linear acceleration and differences."""
+    """Return |lambda| of the contact mode 1 % below and above its limit, under linear acceleration and differences."""
     values = {}
     for name, scene in CONDITIONAL.items():
         scheme = "central differences" if scene.time.alpha == 0 else "linear acceleration"

@@ -81,7 +81,7 @@ def ringing(scene: Scene, history: History) -> Metrics:
 
 
 def rigid_ringing() -> Metrics:
-    """Return the error of a rigid block that slides closed, over penalty and step."""
+    """Return the error of a rigid block that slides and stays closed, over penalty and step."""
     scene = next(iter(cases(STIFFNESS)))
     numbers = {}
     for p, step in itertools.product((1e8, 1e9), FACT_STEPS):

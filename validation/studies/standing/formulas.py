@@ -60,7 +60,7 @@ def unbalanced(scene: Scene, history: History) -> Metrics:
 
 
 def limit_of(scene: Scene) -> dict[str, Value]:
-    """Return the limit of a scene in closed form, and its excess over it, negative where it stands."""
+    """Return the limit of a scene in closed form, and how far it is above it, negative where it stands."""
     quantity, compute = LIMITS[scene.name.partition("[")[0]]
     limit, beyond = compute(scene.table(PlaneSection))
     return {"quantity": quantity, "limit": limit, "beyond": beyond}
