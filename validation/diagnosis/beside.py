@@ -1,7 +1,7 @@
 """A history beside runs of its scene by `dda`: the scene's own, one thing changed, or not known.
 
-A step of contacts that open or slip is a continuous, piecewise linear function of the state before it, so that a run
-depends continuously on every number of the scene, with kinks where a contact switches; every switch may enlarge a
+A step of contacts that open or slip is a continuous, piecewise linear function of the state before it: a run depends
+continuously on every number of the scene, with kinks where a contact switches, and every switch may enlarge a
 difference. Numbers are therefore fitted to the first rows that depart, then to twice as many, up to the horizon behind
 which two correct codes need not agree.
 
@@ -64,22 +64,12 @@ NOISY = 4 * LAGS  # rows from which on all lags are there by which noise is told
 
 @dataclass(frozen=True, eq=False)
 class RunExplanation:
-    """A candidate at its best number, with what its run leaves.
-
-    Attributes
-    ----------
-    ratio
-        Over what may remain, in the worst row [1].
-    left
-        Root mean square over the largest value, of the worst column [1].
-    is_noise
-        Whether that is more than digits, but has no shape.
-    """
+    """A candidate at its best number, with what its run leaves."""
 
     candidate: Fitted[Values]
-    ratio: float
-    left: float
-    is_noise: bool = False
+    ratio: float  # of what it leaves to what may remain, in the worst row [1]
+    left: float  # root mean square over the largest value, of the worst column [1]
+    is_noise: bool = False  # whether that is more than digits, but has no shape
 
     @property
     def explains(self) -> bool:
@@ -117,19 +107,6 @@ def rank(explanation: RunExplanation) -> tuple[bool, float]:
 class SceneSearch:
     """The search for what gives a history back, beside runs of its scene by `dda`.
 
-    Attributes
-    ----------
-    scene
-        At the steps of the history.
-    reading
-        The history as it is read.
-    recorded
-        Its columns, (columns, rows).
-    scene_run
-        Columns of the scene's own run at all rows.
-    allowed
-        What may remain of each row, (columns, rows that can be judged).
-
     Raises
     ------
     InputError
@@ -143,11 +120,11 @@ class SceneSearch:
     model = ""  # name of the solver whose runs they are, where it is another one than `dda`
     model_words = ""
 
-    scene: Scene
+    scene: Scene  # at the steps of the history
     reading: Reading
-    recorded: Array = field(init=False)
-    scene_run: Array = field(init=False)
-    allowed: Array = field(init=False)
+    recorded: Array = field(init=False)  # columns of the history, (columns, rows)
+    scene_run: Array = field(init=False)  # columns of the scene's own run at all rows
+    allowed: Array = field(init=False)  # what may remain, (columns, rows that can be judged)
 
     def __post_init__(self) -> None:
         """Begin with the scene's own run."""
@@ -164,7 +141,7 @@ class SceneSearch:
         allowed = np.maximum(units + ARITHMETIC * sizes, least) + self.spread({}, scene_run)
         self.allowed = allowed[:, np.all(np.isfinite(allowed), axis=0)]
 
-    # ---- of a kind of scene -----------------------------------------------------------------------------------------
+    # ---- of a kind of scene ----
 
     def candidates(self) -> Iterator[Candidate]:
         """Yield everything that may be changed in the scene, one thing at a time."""
@@ -173,12 +150,7 @@ class SceneSearch:
     def solved(self, values: Values, steps: int, is_shifted: bool) -> Array | None:
         """Return the columns of a change at all of its own steps, (columns, steps); None where there is no such run.
 
-        Parameters
-        ----------
-        steps
-            Of the history.
-        is_shifted
-            Whether a number is larger by `SHIFT`, as rounding makes it in another code.
+        A shifted run has a number larger by `SHIFT`, as rounding makes it in another code.
         """
         raise NotImplementedError
 
@@ -187,7 +159,7 @@ class SceneSearch:
         """The candidates, each of them once."""
         return list(self.candidates())
 
-    # ---- runs -------------------------------------------------------------------------------------------------------
+    # ---- runs ----
 
     @property
     def rows(self) -> int:
@@ -277,15 +249,12 @@ class SceneSearch:
         departure = evidence.measured(self.scene_run[0, : self.rows], self.recorded[0, : self.rows], rows, 0.0)
         return replace(departure, step=int(rows[self.departing[0]]) + 1)
 
-    # ---- the search -------------------------------------------------------------------------------------------------
+    # ---- the search ----
 
     def explanations(self, begun: Sequence[Fitted[Values]] = ()) -> list[RunExplanation]:
         """Return all candidates that were pursued to the last row, the one that leaves least first.
 
-        Parameters
-        ----------
-        begun
-            The candidates, with numbers to begin from, where another search has found which can be meant.
+        They are those `begun`, with numbers to begin from, where another search has found which can be meant.
         """
         departing = self.departing
         if len(departing) < LEAST_ROWS or largest(self.over(self.scene_run, self.rows)) <= APART:
@@ -404,35 +373,19 @@ def _is_same(first: RunExplanation, second: RunExplanation) -> bool:
     return abs(first.value - second.value) <= SAME_NUMBER * max(1.0, abs(second.value))
 
 
-# ---- the answer -----------------------------------------------------------------------------------------------------
+# ---- the answer ----
 
 
 @dataclass(frozen=True, eq=False)
 class RunVerdict:
-    """What a history came to.
-
-    Attributes
-    ----------
-    search
-        The history beside its scene.
-    explained
-        Whether it is certain.
-    causes
-        Ids of what explains it, or comes nearest, with their numbers.
-    words
-        Of these causes.
-    best
-        What the run changes that explains it, or comes nearest.
-    alike
-        Causes that give the same rows.
-    """
+    """What a history came to."""
 
     search: SceneSearch
-    explained: bool
-    causes: Mapping[str, float | None] = field(default_factory=dict)
-    words: Mapping[str, str] = field(default_factory=dict)
-    best: Values = field(default_factory=dict)
-    alike: Sequence[Mapping[str, Any]] = ()
+    explained: bool  # whether it is certain
+    causes: Mapping[str, float | None] = field(default_factory=dict)  # ids of what explains it, or comes nearest
+    words: Mapping[str, str] = field(default_factory=dict)  # of these causes
+    best: Values = field(default_factory=dict)  # what the run changes that explains it, or comes nearest
+    alike: Sequence[Mapping[str, Any]] = ()  # causes that give the same rows
 
     @cached_property
     def columns(self) -> Array:
@@ -443,7 +396,7 @@ class RunVerdict:
 
     @property
     def left(self) -> float:
-        """What that run leaves [-]."""
+        """What that run leaves over the largest value, of the worst column [-]."""
         return self.search.left(self.columns)
 
 

@@ -46,7 +46,7 @@ class Departure:
 def expected(target: Target, explanation: Fit, scene: Variant, causes: Sequence[str]) -> tuple[Array, Array]:
     """Return displacement [m] and pressure [Pa] of the scene's own scheme with what a program may add without fault.
 
-    Weight, moving geometry and a slightly compliant base are taken over from the fit.
+    That is the fit's weight, moving geometry and slightly compliant base.
     """
     v = explanation.variant
     yields = "base-compliance" in causes
@@ -61,8 +61,8 @@ def departure(
 ) -> Departure | None:
     """Return where the history departs; None if there is no cause but benign ones.
 
-    The column that leaves first dates it; one that never leaves by more than digits and noise dates nothing. A contact
-    that opens is a departure from its first open step on, even before the displacement shows it.
+    The column that leaves first by more than digits and noise dates it. A contact that opens is a departure from its
+    first open step on, even before the displacement shows it.
     """
     if all_benign(causes):
         return None
@@ -129,7 +129,7 @@ class Stage:
 
 
 def surrounded(stage: Stage, explained_by: str = "what surrounds the block") -> Stage:
-    """Return a stage whose number differs from the scene's for a reason that is no fault: neither right nor wrong."""
+    """Return a stage whose number differs from the scene's for a reason that is no fault."""
     if stage.agrees is not False:
         return stage
     return replace(stage, agrees=None, words=f"{stage.words}; {explained_by} explains it")
@@ -176,16 +176,9 @@ def earlier(departure: Departure | None, single_rows: Sequence[tuple[str, int, f
 
 
 def stages(target: Target, expected: Sequence[Array], reading: Reading, factor: float | None) -> list[Stage]:
-    """Return the stages up to the damping.
+    """Return the stages up to the damping, with the scene's own displacement and pressure at the recorded rows.
 
-    Parameters
-    ----------
-    target
-        The history as it is read.
-    expected
-        The scene's own displacement and pressure at the recorded rows.
-    factor
-        Growth in a step, None if bounded.
+    The factor is the growth in a step, None if bounded.
     """
     bounded = "bounded" if factor is None else f"grows by a factor of {factor:.4g} a step"
     measured = [reading_stage(reading), Stage("bounded", factor is None, bounded, {"growth": factor})]
@@ -203,7 +196,7 @@ def stages(target: Target, expected: Sequence[Array], reading: Reading, factor: 
 
 
 def column_stage(name: str, agrees: bool, misfit: float, beside: str, numbers: dict[str, float | None]) -> Stage:
-    """Return whether a column alone is the scene's, with its relative L2 difference and what stands beside that."""
+    """Return whether a column alone is the scene's, with its relative L2 difference."""
     what = "is the scene's" if agrees else f"is {share_text(misfit)} off{beside}"
     return Stage(name, agrees, f"the {name.replace('_', ' ')} alone {what}", {"misfit": misfit, **numbers})
 

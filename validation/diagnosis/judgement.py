@@ -145,7 +145,7 @@ def _of_swapped(scene: Scene, foreign: Foreign, pair: tuple[str, str], tolerance
 
 
 def _refuse_what_is_not_known(scene: Scene) -> None:
-    """Refuse a scene that compare does not step, before anything of it is run."""
+    """Refuse a scene that compare does not step."""
     DiagnosisHooks.of(scene).check(scene)
     features.refuse_damping(scene, "compare")
     features.refuse_sweep(scene)
@@ -246,7 +246,7 @@ def _best(cases: Sequence[Case]) -> tuple[Case, Verdict]:
 
 
 def _without_single_rows(case: Case, verdict: Verdict) -> tuple[Case, Verdict]:
-    """Return case and verdict without single rows that stand out, if without them a cause, or none, explains it."""
+    """Return case and verdict without single rows that stand out, if a cause, or none, then explains the history."""
     for explanation in (verdict.scene_fit, verdict.best.fit):
         rest = case.without_single_rows(explanation)
         if rest is None:
@@ -257,7 +257,7 @@ def _without_single_rows(case: Case, verdict: Verdict) -> tuple[Case, Verdict]:
     return case, verdict
 
 
-# ---- answers --------------------------------------------------------------------------------------------------------
+# ---- answers ----
 
 
 def _stages(case: Case, factor: float | None = None) -> list[Stage]:

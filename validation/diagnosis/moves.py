@@ -1,7 +1,4 @@
-"""The candidate changes: ways to put a cause into the scene's own computation, fixed or with numbers that are fitted.
-
-The rows of `moves.toml` say which there are, and where their numbers start.
-"""
+"""The candidate changes of `moves.toml`: ways to put a cause into the scene's own computation."""
 
 from __future__ import annotations
 

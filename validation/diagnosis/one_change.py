@@ -1,7 +1,7 @@
 """One thing changed, with a number that is fitted: the candidates, their fit, and which of them count as alike.
 
 Whoever searches says what a candidate gives (a run of a scene by a solver of the suite, or columns moved in time) and
-how far that is from a history. The fits and the decision are those of this module for every kind of scene.
+how far that is from a history.
 """
 
 from __future__ import annotations
@@ -49,15 +49,7 @@ def of_schemes(scene: Scene) -> Iterator[CandidateChange[Values]]:
 
 
 def of_numbers(scene: Scene, factors: Sequence[float], units: bool = True) -> Iterator[CandidateChange[Values]]:
-    """Yield every number of a scene as wrong by a factor e^u.
-
-    Parameters
-    ----------
-    factors
-        That fits begin from.
-    units
-        Whether they begin from other units as well.
-    """
+    """Yield every number of a scene as wrong by a factor e^u; fits begin from the factors, and from `units` as well."""
     hooks = DiagnosisHooks.of(scene)
     for number in (*hooks.numbers(scene), *hooks.numbers_of_layers(scene)):
         starts = (*factors, *(UNITS if units and number.id in IN_UNITS else ()))
@@ -88,26 +80,16 @@ def of_discount(scene: Scene, discounts: Sequence[float]) -> CandidateChange[Val
     )
 
 
-# ---- fits -----------------------------------------------------------------------------------------------------------
+# ---- fits ----
 
 
 @dataclass(frozen=True, eq=False)
 class Fitted(Generic[Change]):
-    """A candidate at its best number so far.
-
-    Attributes
-    ----------
-    change
-        The candidate.
-    u
-        Its number; zero where it has none.
-    remainder
-        Norm of what it leaves of a history, or of what the best number would leave were the history linear in it.
-    """
+    """A candidate at its best number so far."""
 
     change: CandidateChange[Change]
-    u: float
-    remainder: float
+    u: float  # its number, zero where it has none
+    remainder: float  # norm of what it leaves, or of what the best number would leave were the history linear in it
 
 
 def nearest_start(residual: Residual, change: CandidateChange[Change]) -> Fitted[Change]:
@@ -189,22 +171,15 @@ def _least_squares(
     return replace(candidate, u=float(solution.x[0]), remainder=norm(solution.fun))
 
 
-# ---- the decision ---------------------------------------------------------------------------------------------------
+# ---- the decision ----
 
 
 def alike(
     explanations: Sequence[Explanation], remainder: Callable[[Explanation], float], times: float, least: float = 0.0
 ) -> list[Explanation]:
-    """Return those of some explanations that leave hardly more than the best, the best first.
+    """Return those of some explanations whose remainder is hardly more than the best's, the best first.
 
-    Parameters
-    ----------
-    remainder
-        What one leaves.
-    times
-        More than the best that others may leave.
-    least
-        That the best counts as leaving: below it no difference is one.
+    Hardly more is at most so many times the best's, which counts as `least` at least: below it no difference is one.
     """
     ordered = sorted(explanations, key=remainder)
     return [each for each in ordered if remainder(each) <= times * max(remainder(ordered[0]), least)]

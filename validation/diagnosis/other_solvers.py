@@ -1,7 +1,6 @@
 """A history beside other solvers of the suite, and beside linear DDA where no candidate change of a block steps it.
 
-The candidates, their fits and the decision are those of `beside`. What a mesh leaves beside an exact solution counts as
-noise.
+Candidates, fits and decision are those of `beside`. What a mesh leaves beside an exact solution counts as noise.
 """
 
 from __future__ import annotations

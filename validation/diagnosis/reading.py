@@ -34,15 +34,15 @@ LARGEST_FILE = 100_000_000  # bytes: a thousand points of so many rows
 class Foreign:
     """A history of another program in SI units, from the first row after t = 0 on.
 
-    `time` [s] and `displacement` [m] (upwards positive) have one value a recorded row, and so has `pressure` [Pa]
-    (None if not given); `steps` [s] are the program's own time steps where it states them. The roundings are the
-    units of the last printed digit of each value, None where they are to be seen from the values. `names` are the
-    file's own names of our columns, `scale` the factors by which its numbers were multiplied.
+    Columns have one value a recorded row, None if not given; `steps` [s] are the program's own time steps where it
+    states them. The roundings are the units of the last printed digit of each value, None where they are to be seen
+    from the values. `names` are the file's own names of our columns, `scale` the factors by which its numbers were
+    multiplied.
     """
 
-    time: Array
-    displacement: Array
-    pressure: Array | None = None
+    time: Array  # [s]
+    displacement: Array  # upwards [m]
+    pressure: Array | None = None  # [Pa]
     steps: Array | None = None
     notes: tuple[str, ...] = ()
     rounding: Array | None = None  # [m]
@@ -94,7 +94,7 @@ def read(path: Path, columns: Mapping[str, str] | None = None, scale: Mapping[st
     return replace(history, names=columns, scale=scale)
 
 
-# ---- tables -------------------------------------------------------------------------------------------------------
+# ---- tables ----
 
 
 def _table(text: str, path: Path, columns: Mapping[str, str]) -> tuple[dict[str, Array], dict[str, float]]:
@@ -158,7 +158,7 @@ def _place(ours: str, theirs: str, names: list[str], path: Path) -> int | None:
     )
 
 
-# ---- measured points of ntdda -------------------------------------------------------------------------------------
+# ---- measured points of ntdda ----
 
 
 def _measured_point(text: str, path: Path, columns: Mapping[str, str]) -> tuple[dict[str, Array], dict[str, float]]:
@@ -203,7 +203,7 @@ def _bounded(rows: int, path: Path) -> None:
         )
 
 
-# ---- checks -------------------------------------------------------------------------------------------------------
+# ---- checks ----
 
 
 def _checked(
@@ -246,7 +246,7 @@ def _checked(
     )
 
 
-# ---- time steps ---------------------------------------------------------------------------------------------------
+# ---- time steps ----
 
 
 @dataclass(frozen=True, eq=False)
@@ -260,12 +260,7 @@ class Stepping:
 
 
 def steppings(foreign: Foreign, step: float) -> list[Stepping]:
-    """Return the ways to read the times of a history, the likeliest first.
-
-    Parameters
-    ----------
-    step
-        The scene's time step [s].
+    """Return the ways to read the times of a history of a scene's time step [s], the likeliest first.
 
     Raises
     ------

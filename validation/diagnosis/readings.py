@@ -103,7 +103,7 @@ class Reading:
 
     @property
     def displacement(self) -> Array:
-        """The displacement [m]."""
+        """Its values [m]."""
         return np.asarray(self.recorded[0])
 
     @property
@@ -143,10 +143,7 @@ def slips(
 ) -> list[Reading]:
     """Return the readings without slips of sign and unit, as sizes beside the scene's own history suggest.
 
-    Parameters
-    ----------
-    furthest
-        Times its first row, beyond which the scene's own history counts as unbounded.
+    That history counts as unbounded beyond `furthest` times its first row.
     """
     of_pressure = [(1.0, 1.0)]
     if foreign.pressure is not None and np.any(foreign.pressure):

@@ -73,8 +73,7 @@ def scheme_numbers(v: Variant) -> dict[str, Any]:
 def companion_split(v: Variant) -> float:
     """Return the other split with which a composite scheme is the same in linear motion, 2 q2.
 
-    Its amplification has the factors 1 - q2 z and 1 - split z / 2 below, which a split of 2 q2 exchanges; at the usual
-    split they are one.
+    Its amplification has the factors 1 - q2 z and 1 - split z / 2 below, which are one at the usual split.
     """
     share = split_of(v)
     return 1 - 2 * share * (v.spectral + 1) / (2 * share * (v.spectral - 1) + 4)

@@ -1,11 +1,11 @@
 """The search for the fewest changes that explain a history, and the one decision over what explains it.
 
-Candidates are fitted many at once over the first few periods, where no fit goes astray; what comes near there is fitted
-over more and more of the history. A change explains a history if nothing but digits and noise remains with it
+Candidates are fitted many at once over the first few periods, where no fit goes astray; what comes near is fitted over
+more and more of the history. A change explains a history if nothing but digits and noise remains with it
 (`validation.diagnosis.fits.bar`). The scene as it is comes first, then one change, then what surrounds a block, then
-two. Of those that explain, the one with the least
+two. Of those that explain, the one with the least Bayesian information criterion
 
-    n ln chi^2 + k ln n + 14 r                                             (Bayesian information criterion)
+    n ln chi^2 + k ln n + 14 r
 
 is named, chi^2 the mean square over the variances of n rows, at least 1, k the free numbers and r the changes that
 people rarely make: if no other is within 10 of it, and if the scene leaves ten times more for every change and every
@@ -43,7 +43,7 @@ CLEAR = 10.0  # of the information criterion: odds of 150 to 1
 RARE = 14.0  # of the same, for a change that people rarely make: a thousand to one
 STANDS_OUT = 10.0  # times more that the scene must leave for each change: noise hides no other one of that size
 AROUND = 5e-5  # relative L2 that moving geometry and a base leave, which every program treats in its own way
-AROUND_OPEN = 3e-4  # the same where the contact opens: each landing is late or early by what the base leaves
+AROUND_OPEN = 3e-4  # the same where the contact opens: landings are late or early by what the base leaves
 NEGLIGIBLE, NEGLIGIBLE_SHARE = 1e-6, 1e-3  # relative L2 that rounded constants leave, and share of the difference
 WITHOUT_IT = 2.0  # times more that a fit leaves without what surrounds the block, or a number, if that is there at all
 SHARE = 0.02  # of what is to be explained, at most, that they may leave
@@ -77,7 +77,7 @@ class Explanation:
         return tuple(dict.fromkeys(move.id for move in self.moves))
 
 
-# ---- fits -----------------------------------------------------------------------------------------------------------
+# ---- fits ----
 
 
 def fitted(target: Target, scene: Variant, combos: Sequence[tuple[Move, ...]]) -> list[Explanation]:
@@ -124,7 +124,7 @@ def _begun(target: Target, scene: Variant, combos: Sequence[tuple[Move, ...]]) -
 
 
 def _starts(scene: Variant, combo: Sequence[Move]) -> list[Variant]:
-    """Return the variants from which the fits of a combination may begin: one number at a time."""
+    """Return the variants from which the fits of a combination may begin."""
     fixed = changed(scene, {name: value for move in combo for name, value in move.changes.items()})
     firsts = [changed(fixed, {move.free[0]: value}) for move in combo for value in move.starts]
     return firsts if firsts and len(combo) == 1 else [fixed, *firsts]
@@ -169,7 +169,7 @@ class Verdict:
         return 0.0 if self.same else min(self.best.fit.misfit / max(self.scene_fit.misfit, 1e-300), 1.0)
 
 
-# ---- the decision ---------------------------------------------------------------------------------------------------
+# ---- the decision ----
 
 
 def decided(target: Target, scene_fit: Fit, explanations: Sequence[Explanation]) -> Verdict:
@@ -208,8 +208,7 @@ def decided(target: Target, scene_fit: Fit, explanations: Sequence[Explanation])
 def _fewer(target: Target, scene: Variant, explanations: Sequence[Explanation]) -> list[Explanation]:
     """Return explanations of several changes without each of them, fitted from where they are.
 
-    Candidates are pursued by what they leave before all of them are in: a dead band may stand in for the mass of a base
-    that is fitted later, and has then no effect.
+    Candidates are pursued before all are in: a dead band may stand in for the mass of a base that is fitted later.
     """
     nearest = {f.ids: f for f in sorted(explanations, key=lambda f: -f.fit.misfit) if len(f.moves) > 1}
     starts: list[Start] = []
@@ -228,13 +227,7 @@ def _fewer(target: Target, scene: Variant, explanations: Sequence[Explanation]) 
 
 
 def score(target: Target, deviations: Array, explanation: Explanation) -> float:
-    """Return the information criterion of an explanation.
-
-    Parameters
-    ----------
-    deviations
-        Standard deviation of each row of each column.
-    """
+    """Return the information criterion of an explanation, by the standard deviation of each row of each column."""
     remainder = target.inner(explanation.fit.residual, explanation.fit.variant)
     shares = np.ravel(target.parts(remainder) / deviations)
     n = len(shares)
@@ -269,7 +262,7 @@ def _canonical(
 
 
 def _scheme_alone(explanation: Explanation) -> str | None:
-    """Return the id of a time scheme with fixed numbers that explains by itself, or beside a discount, else None."""
+    """Return the id of a time scheme with fixed numbers that explains alone or beside a discount, else None."""
     first, *others = explanation.ids or ("",)
     alone = first in SCHEMES and others in ([], ["gg"]) and set(explanation.fit.free) <= {"gg"}
     return first if alone else None
@@ -278,7 +271,7 @@ def _scheme_alone(explanation: Explanation) -> str | None:
 def relatives(target: Target, scene: Variant, verdict: Verdict) -> list[Explanation]:
     """Return the other explanations that give the rows of the named one themselves, without digits and noise.
 
-    They are found by fitting to its own history what explains the rows as well, and the factors of a scene in pairs.
+    What explains the rows as well, and the factors of a scene in pairs, is fitted to the history of the named one.
     """
     best = verdict.best
     if not (verdict.explained and best.moves):
@@ -297,7 +290,7 @@ def relatives(target: Target, scene: Variant, verdict: Verdict) -> list[Explanat
 
 
 def with_same_rows(target: Target, scene: Variant, verdict: Verdict) -> Verdict:
-    """Return a verdict with what gives the rows of the named causes themselves.
+    """Return a verdict with its `relatives`.
 
     Of several factors none is named where other ones, as few, do: two numbers of a product stand for two others.
     """
@@ -343,8 +336,8 @@ def _is_negligible(target: Target, candidate: Fit, least: float) -> bool:
 def _surrounded(target: Target, candidate: Fit) -> bool:
     """Whether moving geometry or a base is seen in a history: without it the same fit leaves much more.
 
-    What surrounds a block is treated differently by every program, so that some of it may be left; a base of 1e-6 or
-    a geometry that makes no difference has explained nothing, and excuses nothing.
+    Every program treats what surrounds a block in its own way, so that some of it may be left; a base of 1e-6 or a
+    geometry that makes no difference excuses nothing.
     """
     v = candidate.variant
     base = v.base > 0 or (v.softness > 0 and benign_springs(target.column, v))
@@ -357,9 +350,9 @@ def _surrounded(target: Target, candidate: Fit) -> bool:
 def is_determined(target: Target, scene_fit: Fit, explanation: Explanation) -> bool:
     """Whether the rows determine every free number, and as another one than that by which nothing is changed.
 
-    HHT at alpha_f = 1e-7 is average acceleration, and a dashpot of nothing the scene's own contact: a number says
-    nothing if such a special case explains the rows as well, if no row changes with it, or if they leave open how
-    many times the scene's it is.
+    HHT at alpha_f = 1e-7 is average acceleration, a dashpot of nothing the scene's own contact: a number says nothing
+    if such a special case explains the rows as well, if no row changes with it, or if they leave open how many times
+    the scene's it is.
     """
     solution, scene = explanation.fit, scene_fit.variant
     v = solution.variant
@@ -393,15 +386,15 @@ def is_determined(target: Target, scene_fit: Fit, explanation: Explanation) -> b
 
 
 def _without(free: Sequence[str], names: Collection[str]) -> tuple[str, ...]:
-    """Return the free numbers that are left where some are not."""
+    """Return the free numbers without some."""
     return tuple(name for name in free if name not in names)
 
 
 def _stands_out(target: Target, scene_fit: Fit, explanation: Explanation) -> bool:
     """Whether enough of the difference stands out of digits and noise for a cause to be named.
 
-    Where they hide a share of it, another cause that leaves less than that share would look the same: a scheme or a
-    contact method has many that are near to it, and counts twice. What surrounds a block counts as nothing.
+    Where they hide a share of it, another cause that leaves less would look the same: a scheme or a contact method has
+    many near to it and counts twice, what surrounds a block counts as nothing.
     """
     many = any(CAUSES[name].family or name in CONTACT_METHODS or name == "scheme" for name in explanation.ids)
     faults = [move for move in explanation.moves if move.id not in SURROUNDINGS]
@@ -410,7 +403,7 @@ def _stands_out(target: Target, scene_fit: Fit, explanation: Explanation) -> boo
     return explanation.fit.misfit <= min(most, STANDS_OUT**-changes) * scene_fit.misfit
 
 
-# ---- the search -----------------------------------------------------------------------------------------------------
+# ---- the search ----
 
 
 def as_it_is(target: Target, scene: Variant) -> Verdict:
@@ -421,15 +414,7 @@ def as_it_is(target: Target, scene: Variant) -> Verdict:
 
 
 def simple(target: Target, scene: Variant) -> Verdict:
-    """Return what none, one cause, or what surrounds a block explains.
-
-    Parameters
-    ----------
-    target
-        The history.
-    scene
-        The scene's own scheme, nothing added.
-    """
+    """Return what none, one cause, or what surrounds a block explains."""
     own = as_it_is(target, scene)
     if own.same:
         return own

@@ -2,9 +2,9 @@
 
 Other programs differ from a scene in habits that go together: friction that lags, a dead band, the block's own weight
 straight down, a base that yields. Weight and springs are fitted to the first steps, where no corner has left the base,
-then to more of them, since stick and slip amplify a difference. What a base leaves beside that, which has a mass of its
-own in most programs, is told from an error by comparison: it is small, and small beside what the other law of friction
-leaves.
+then to more of them, since stick and slip amplify a difference. What a base with a mass of its own leaves beside that,
+as most programs have it, is told from an error by comparison: it is small, and small beside what the other law of
+friction leaves.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ SPRINGS = frozenset({"springs-factor", "normal-springs-factor"})
 OF_FRICTION = frozenset({"friction-factor", "cohesion", "shear-springs-factor", "lagged-friction"})
 
 
-# ---- reading --------------------------------------------------------------------------------------------------------
+# ---- reading ----
 
 
 def search_of(scene: Scene, foreign: Foreign) -> SlopeSearch:
@@ -140,7 +140,7 @@ def refuse_other_scenes(scene: Scene) -> None:
         )
 
 
-# ---- runs -----------------------------------------------------------------------------------------------------------
+# ---- runs ----
 
 
 class SlopeSearch(SceneSearch):
@@ -207,37 +207,21 @@ class SlopeSearch(SceneSearch):
         return Departure(int(np.argmax(np.any(apart > unit, axis=0))) + 1, "offset")
 
 
-# ---- habits of other programs ---------------------------------------------------------------------------------------
+# ---- habits of other programs ----
 
 LAW = ("contact.rules", "contact.band")
 
 
 @dataclass(frozen=True)
 class Habits:
-    """How another program runs a scene.
+    """How another program runs a scene."""
 
-    Attributes
-    ----------
-    rules
-        Its law of friction.
-    band
-        Penetration beyond which an open corner closes [m]; None for the scene's.
-    weight
-        Share of the block's own weight, straight down [-].
-    softness
-        Ln of the scene's normal stiffness over that in effect.
-    along
-        Whether the springs along the base are softer by the same factor.
-    error
-        Half width of the 95 % interval of the softness.
-    """
-
-    rules: str
-    band: float | None = None
-    weight: float = 0.0
-    softness: float = 0.0
-    along: bool = True
-    error: float = 0.0
+    rules: str  # its law of friction
+    band: float | None = None  # penetration beyond which an open corner closes [m]; None for the scene's
+    weight: float = 0.0  # share of the block's own weight, straight down [-]
+    softness: float = 0.0  # ln of the scene's normal stiffness over that in effect
+    along: bool = True  # whether the springs along the base are softer by the same factor
+    error: float = 0.0  # half width of the 95 % interval of the softness
 
     def values(self, scene: Scene) -> Values:
         """Return what of the scene is so."""
@@ -417,7 +401,7 @@ def _nearness(habits: Habits, search: SlopeSearch) -> tuple[int, float]:
     return -first, float(np.linalg.norm(left))
 
 
-# ---- one number -----------------------------------------------------------------------------------------------------
+# ---- one number ----
 
 
 def candidates(scene: Scene) -> Iterator[Candidate]:
@@ -450,17 +434,11 @@ def _words_of_springs(which: str, factor: float) -> str:
     return f"the {which} are {factor:.4g} times the scene's"
 
 
-# ---- the verdict ----------------------------------------------------------------------------------------------------
+# ---- the verdict ----
 
 
 def verdict_on(search: SlopeSearch, ranked: list[Judged]) -> RunVerdict:
-    """Return what explains a history that is not its scene's: habits, one number, or a base with mass.
-
-    Parameters
-    ----------
-    ranked
-        The nearest habits under each law of friction.
-    """
+    """Return what explains a history not its scene's: habits (nearest under each law), one number, a base with mass."""
     habits, run = min(ranked, key=lambda each: (not (each[1].explains and each[0].is_usual), each[1].left))
     causes = habits.causes(search)
     words = {name: words_of(name, value or 0.0) for name, value in causes.items()}

@@ -28,7 +28,7 @@ POISSON = 0.499  # a fit may try more
 class Variant:
     """One way to compute a scene: a scheme, what a program adds, what was mistaken, and what is written of it.
 
-    The numbers of the other families than Newmark's follow from `spectral` (`validation.diagnosis.schemes`): alpha_f of
+    The numbers of families other than Newmark's follow from `spectral` (`validation.diagnosis.schemes`): alpha_f of
     HHT, theta of the theta scheme, rho_inf of the others.
     """
 
@@ -142,7 +142,7 @@ def unit_elasticity(poisson: float, plane_strain: bool) -> Array:
     return np.asarray(C[np.ix_([1, 0], [1, 0])])
 
 
-# ---- of a scene -----------------------------------------------------------------------------------------------------
+# ---- of a scene ----
 
 
 def rectangle_of(scene: Scene) -> Rectangle | None:

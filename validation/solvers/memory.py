@@ -58,7 +58,7 @@ def check(scene: Scene, solver: Solver, limit: float = math.inf) -> None:
         )
 
 
-# ---- what is there --------------------------------------------------------------------------------------------------
+# ---- what is there ----
 
 
 def available() -> float:

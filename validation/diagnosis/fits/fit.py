@@ -1,9 +1,9 @@
 """Which scheme made a history: least-squares fits of many variants at once, compared by what each one explains.
 
-A fit minimises the relative L2 difference between a history and a `Variant` over the variant's free numbers
-(Levenberg-Marquardt, all fits advancing together because one pass through the steps serves them all). The intervals
-are 95 % ones of the linearised problem, with the residual's own correlation taken into account: n rows whose
-residual has the lag-one correlation r count as n (1 - r) / (1 + r) independent ones.
+A fit minimises the relative L2 difference between a history and a `Variant` over the variant's free numbers by the
+method of Levenberg and Marquardt, all fits at once because one pass through the steps serves them all. The intervals
+are 95 % ones of the linearised problem: n rows whose residual has the lag-one correlation r count as
+n (1 - r) / (1 + r) independent ones.
 """
 
 from __future__ import annotations
@@ -73,17 +73,7 @@ class Interval:
 
 
 def fit(target: Target, starts: Sequence[tuple[Variant, tuple[str, ...]]], rounds: int = 8) -> list[Fit]:
-    """Fit variants with their free numbers, all at once.
-
-    Parameters
-    ----------
-    target
-        The history.
-    starts
-        Variants with the names of the numbers that are free in each.
-    rounds
-        Steps of Levenberg and Marquardt's method.
-    """
+    """Fit variants, each with the names of its free numbers, in some rounds of Levenberg and Marquardt's method."""
     goal = target.values
     best = _linearised(target, starts, goal)
     damping = [1e-4] * len(best)
@@ -166,7 +156,7 @@ def is_factor(name: str) -> bool:
 
 
 def changed(variant: Variant, changes: Mapping[str, Any]) -> Variant:
-    """Return a variant with some fields replaced, by name."""
+    """Return a variant with some fields replaced."""
     return replace(variant, **changes)
 
 

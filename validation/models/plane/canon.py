@@ -35,7 +35,7 @@ DEPARTED = 1e-3  # m, by which a block has left its straight path
 TURNED = 2 * UNKNOWN  # rad: an edge is turned by it if both its ends are off by one per cent of its length
 
 
-# ---- the exact problem of a scene -----------------------------------------------------------------------------------
+# ---- the exact problem of a scene ----
 
 
 def moving_blocks(scene: Scene) -> list[PlacedBlock]:
@@ -144,7 +144,7 @@ def touch_of(scene: Scene) -> FirstTouch | None:
     return next(iter(first_touches(*polygons(scene), scene.time.duration, 0.0)), None)
 
 
-# ---- what is measured on answers ------------------------------------------------------------------------------------
+# ---- what is measured on answers ----
 
 
 def moved(history: History, block: PlacedBlock) -> Array:

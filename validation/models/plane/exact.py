@@ -136,7 +136,7 @@ def _flown(ground: BoxesOnGround, box: Box, time: Array) -> Array:
     return np.asarray(box.x + box.velocity[0] * time + ground.pull[0] * time**2 / 2)
 
 
-# ---- at rest --------------------------------------------------------------------------------------------------------
+# ---- at rest ----
 
 
 def _pile(ground: BoxesOnGround) -> Motion:
@@ -178,7 +178,7 @@ def _is_supported(ground: BoxesOnGround, lowest: int) -> bool:
     return low < meets < high
 
 
-# ---- on the plane ---------------------------------------------------------------------------------------------------
+# ---- on the plane ----
 
 
 def _on_plane(ground: BoxesOnGround, box: Box) -> Motion:
@@ -210,7 +210,7 @@ def _check_upright(box: Box, needed_friction: float) -> None:
     _unless(needed_friction >= box.width / box.height, why)
 
 
-# ---- flights --------------------------------------------------------------------------------------------------------
+# ---- flights ----
 
 
 def _check_flat(ground: BoxesOnGround, box: Box) -> None:
@@ -262,7 +262,7 @@ def _flights(
         flights.append((start + lasted, 0.0, rebound if rebound > AT_REST * first_landing else 0.0))
 
 
-# ---- on a spring ----------------------------------------------------------------------------------------------------
+# ---- on a spring ----
 
 
 def _on_spring(ground: BoxesOnGround, box: Box) -> Motion:
@@ -292,7 +292,7 @@ def _on_spring(ground: BoxesOnGround, box: Box) -> Motion:
     return motion
 
 
-# ---- on moving ground -----------------------------------------------------------------------------------------------
+# ---- on moving ground ----
 
 
 def _shaken(ground: BoxesOnGround, box: Box) -> Motion:
@@ -311,7 +311,7 @@ def _shaken(ground: BoxesOnGround, box: Box) -> Motion:
     return motion
 
 
-# ---- about a corner -------------------------------------------------------------------------------------------------
+# ---- about a corner ----
 
 
 def _turns_off(box: Box) -> bool:
@@ -363,7 +363,7 @@ def _about_corner(scene: Scene, ground: BoxesOnGround, box: Box) -> Motion:
     return motion
 
 
-# ---- tumbling -------------------------------------------------------------------------------------------------------
+# ---- tumbling ----
 
 
 def _tumbling(ground: BoxesOnGround, box: Box) -> Motion:

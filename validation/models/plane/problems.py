@@ -53,7 +53,7 @@ MINUTE = 60.0  # s
 SETTLED = 0.5  # s after a landing: what moves away then has rebounded
 
 
-# ---- standing -------------------------------------------------------------------------------------------------------
+# ---- standing ----
 
 
 def standing(scene: Scene) -> tuple[JudgedNumber, ...]:
@@ -76,7 +76,7 @@ def standing(scene: Scene) -> tuple[JudgedNumber, ...]:
     return (varied(slid, "m", distance, FRICTION, lambda h: float(measures.column(h, box, "x")[-1] - box.x)),)
 
 
-# ---- bounces --------------------------------------------------------------------------------------------------------
+# ---- bounces ----
 
 
 def restitution(scene: Scene) -> tuple[JudgedNumber, ...]:
@@ -146,7 +146,7 @@ def tumbling(scene: Scene) -> tuple[JudgedNumber, ...]:
     return (*bouncing(scene), at_most("change of the speed along the ground", "m/s", landing, reason, change))
 
 
-# ---- piles ----------------------------------------------------------------------------------------------------------
+# ---- piles ----
 
 
 def pile(scene: Scene) -> tuple[JudgedNumber, ...]:
@@ -186,7 +186,7 @@ def pile(scene: Scene) -> tuple[JudgedNumber, ...]:
     )
 
 
-# ---- toppling -------------------------------------------------------------------------------------------------------
+# ---- toppling ----
 
 
 def rectangle_of(ground: BoxesOnGround, factor: float = 1.0) -> Rectangle:
@@ -239,7 +239,7 @@ def _toppling_cases() -> Iterator[PlaneCase]:
         yield PlaneCase(f"spin {factor:g} of critical", started, overturning)
 
 
-# ---- shaken ---------------------------------------------------------------------------------------------------------
+# ---- shaken ----
 
 
 def shaken_box(scene: Scene, factor: float = 1.0) -> ShakenBox:
@@ -273,7 +273,7 @@ def shaken(scene: Scene) -> tuple[JudgedNumber, ...]:
     )
 
 
-# ---- impact on a spring ---------------------------------------------------------------------------------------------
+# ---- impact on a spring ----
 
 
 def impact_of(scene: Scene, stiffness: float = 1.0, mass: float = 1.0) -> SpringImpact:

@@ -178,7 +178,7 @@ def ask(
         raise
 
 
-# ---- on the other side ----------------------------------------------------------------------------------------------
+# ---- on the other side ----
 
 
 def serve(answer: Callable[[dict[str, Any]], Mapping[str, Any]]) -> None:
