@@ -22,8 +22,7 @@ from validation.scenes.scene import Scene
 from validation.solvers.limits import check_step
 from validation.solvers.translation import naming
 
-# What solvers raise where numbers leave the range of double precision: also a pivot or a mass that rounding or
-# underflow has made zero.
+# What solvers raise where numbers leave double precision, also where rounding or underflow made a pivot or a mass zero.
 OUT_OF_RANGE = (OverflowError, ZeroDivisionError, FloatingPointError, np.linalg.LinAlgError)
 
 
@@ -170,10 +169,10 @@ class Solver:
     4. `sources`: modules or packages whose files enter the key of its results.
     5. `role`, `rank` and `line`: its part in comparisons, its place among the references (each solver is compared
        with those of higher rank) and its look in figures.
-    6. `applicable(scene)`: None, or the reason in words why it cannot run this scene, apart from features.
     7. `build(scene, full)`: a `Prepared`, whose `run()` gives a `Run` with one value per step, from the first step
        on, for every column in `scene.run.columns`; numerical failure is an outcome, bad input an `InputError`.
-       A solver of one function overrides `solve(scene, full, fields)` instead.
+       A solver of one function overrides `solve(scene, full, fields)` instead, and `static`, `modes`, `diagnostics`
+       or `response` where it has them.
     8. `own_columns`, or `columns()`: the columns that it has; a scene's further columns are not asked of it.
     9. `libraries`, or `missing(scene)`: what it imports that an extra brings; where one is absent its runs are NOT RUN.
     """
@@ -231,7 +230,7 @@ class Solver:
         return [name for name in features.of(scene) if name not in self.handles]
 
     def columns(self) -> tuple[str, ...] | None:
-        """Return the columns that this solver has, or None where it takes whatever a scene asks for."""
+        """Return the columns that this solver has, None where it takes whatever a scene asks for."""
         return self.own_columns
 
     def versions(self) -> Mapping[str, str]:
@@ -264,19 +263,19 @@ class Solver:
         return self.prepare(scene, full).run(fields)
 
     def static(self, scene: Scene) -> Mapping[str, float]:
-        """Return the static solution of a scene (a solver that is one function may override it)."""
+        """Return the static solution of a scene."""
         return self.prepare(scene).static()
 
     def modes(self, scene: Scene) -> tuple[Mode, ...]:
-        """Return the modes of a scene (a solver that is one function may override it)."""
+        """Return the modes of a scene."""
         return self.prepare(scene).modes()
 
     def diagnostics(self, scene: Scene) -> Mapping[str, float]:
-        """Return the diagnostics of a scene (a solver that is one function may override it)."""
+        """Return the diagnostics of a scene."""
         return self.prepare(scene).diagnostics()
 
     def response(self, scene: Scene, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
-        """Return the frequency response of a scene (a solver that is one function may override it)."""
+        """Return the frequency response of a scene."""
         return self.prepare(scene).response(frequencies, exact)
 
 

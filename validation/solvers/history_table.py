@@ -63,22 +63,14 @@ def read_table(
 
     Parameters
     ----------
-    path
-        Of the text file.
     instants
         At which it has to have its rows [s].
     units
         Columns that are read, and the SI unit of each.
-    required
-        Which of them it has to hold.
-    defects
-        Which takes what is wrong.
     absent
         What one does about a column that the program cannot report.
     text
         The table where it is no file's: what a program has printed, of which the path is the name.
-    header
-        What the table calls its columns, and what else its numbers are to be multiplied by.
     """
     before = len(defects)
     rows = _rows(path, text, len(instants), defects)

@@ -21,16 +21,8 @@ DASHPOTS = {  # what tables state to what then grows where delta is below 1/2
 def check_step(scene: Scene, highest_frequency: Callable[[], float | None]) -> None:
     """Refuse a step beyond the limit of a conditionally stable scheme.
 
-    A contact that opens or slips only softens the model, so the limit of the closed, sticking contact is the
-    least of all.
-
-    Parameters
-    ----------
-    scene
-        The scene with its scheme.
-    highest_frequency
-        Of the solver's model [rad/s], None where nothing limits its step; asked for by conditionally stable schemes
-        only.
+    A contact that opens or slips only softens the model, so the limit of the closed, sticking contact is the least of
+    all. `highest_frequency` gives the model's [rad/s], None where nothing limits its step; only those schemes ask it.
 
     Raises
     ------

@@ -136,16 +136,7 @@ def by_role(required_role: Role) -> list[str]:
 
 
 def solve(scene: Scene, solver: str | Solver, full: bool = False) -> Run:
-    """Run one scene with one solver.
-
-    Parameters
-    ----------
-    scene
-        A scene without a sweep; pick a case with `Scene.expand` or `Scene.with_values`.
-    solver
-        A solver or its name.
-    full
-        Switch the numerical savings off.
+    """Run one scene, without a sweep (`Scene.expand`, `Scene.with_values`); `full` switches numerical savings off.
 
     Raises
     ------

@@ -31,7 +31,7 @@ def load_of(scene: Scene, motion: dda.BaseMotion | None = None) -> dda.Load:
 def closed_model(scene: Scene) -> dda.TwoBlockModel:
     """Return the block of a scene on its base with both corners closed and sticking.
 
-    What has no pressure, such as a block that is thrown, is given one: its impact moves the same unknowns.
+    A block without pressure, such as one that is thrown, is given one: its impact moves the same unknowns.
     """
     b = scene.block
     corners = closed_corners(scene.contact.stiffness, scene.contact.shear)

@@ -119,14 +119,7 @@ def record_of_steps(
 ) -> ContactRecord:
     """Return what the contacts of a block did at its steps.
 
-    Parameters
-    ----------
-    scene, result
-        The scene and the history of its contacts.
-    impulse
-        Of all contacts from t = 0 on [N s], shape (steps,).
-    base
-        The contacts of the base, by which opening is measured.
+    The impulse is that of all contacts from t = 0 on [N s], shape (steps,); opening is measured by those of the base.
     """
     return opened.record(
         scene,

@@ -125,7 +125,7 @@ class ContactLineColumn(LineColumn):
         raise NotReported("fem: a column whose contacts open or slip has no frequency response")
 
     def switches(self) -> tuple[Switch, ...]:
-        """Return the changes of the contacts' states between the steps of the history that was run."""
+        """Return the switches between the steps of the history that was run."""
         result = completed(self.result)
         slips = self.column.law == "frictional"
         contacts = zip(self.column.contacts, result.states, strict=True)

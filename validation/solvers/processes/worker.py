@@ -81,7 +81,7 @@ class Worker:
     def ask(self, request: Mapping[str, Any], limit: float | None = None) -> dict[str, Any]:
         """Send a request and wait for its answer, at most `limit` seconds.
 
-        What carries the number of another request is not taken: a process that has forked answers twice.
+        An answer to another request is not taken: a process that has forked answers twice.
 
         Raises
         ------

@@ -24,7 +24,7 @@ class Slide:
     time: Array  # instants [s], shape (times,)
     slide: Array  # slide towards +x, down a slope [m], shape (times,)
     velocity: Array  # its rate [m/s], shape (times,)
-    slip: float  # length of the way until the last instant, both directions added [m]
+    slip: float  # length of the way until the last instant, in both directions [m]
     switches: tuple[tuple[float, int], ...]  # instants [s]; 1 and -1: it begins to slide towards +x or -x, 0: it sticks
 
 
