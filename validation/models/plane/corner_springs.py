@@ -89,14 +89,7 @@ def highest_frequency(block: PlacedBlock, stiffness: float) -> float:
 def moving_advice(scene: Scene, error: float, keep_springs: bool = False) -> MovingAdvice:
     """Return what springs and step of moving blocks make of their contacts, and which to take.
 
-    Parameters
-    ----------
-    scene
-        Without a sweep.
-    error
-        Of the rebound of a landing, that is allowed [1].
-    keep_springs
-        Whether the springs are those of real joints, and stay.
+    The error is that of the rebound of a landing [1]; springs are kept where they are those of real joints.
 
     Raises
     ------
@@ -149,7 +142,7 @@ def moving_advice(scene: Scene, error: float, keep_springs: bool = False) -> Mov
 def spring_range(plane: PlaneSection) -> tuple[float, float] | None:
     """Return the softest and the stiffest spring of a contact, of shear too [N/m]; None where nothing touches.
 
-    Where a contact is rigid they are those that `dda` takes in its place.
+    Of rigid contact they are those that `dda` takes in its place.
     """
     laws = plane.assembly.all_springs
     normal = [OWN_STIFFNESS if math.isinf(law.stiffness) else law.stiffness for law in laws]

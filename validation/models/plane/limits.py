@@ -108,14 +108,8 @@ def can_rest(
 ) -> bool:
     """Return whether forces at contacts of friction mu balance the weights of blocks of one density.
 
-    Parameters
-    ----------
-    outlines, held
-        Corners of every block [m], and whether it is fixed.
-    mu
-        tan(phi) of all contacts, None where nothing can slide.
-    gravity
-        In which direction the weights act.
+    Blocks are stated by their corners [m] and by which are held; mu is tan(phi) of all contacts, None where nothing can
+    slide, gravity a direction.
     """
     return balance_of(outlines, held, gravity).is_possible(mu)
 
@@ -216,15 +210,8 @@ def recursion(heights: Sequence[float], width: float, rise: float, dip: float, m
 
     Goodman and Bray (1976): from the highest column down, P of the next one is what toppling or sliding leaves,
     with the forces between columns at the tops of the contacts and their friction at its limit. Zero: it stands.
-
-    Parameters
-    ----------
-    heights
-        Of the columns from the toe on [m].
-    width, rise
-        Of a column along the dip, and of the base from a column to the next [m].
-    dip, mu
-        Of the treads [rad], and tan(phi).
+    Heights [m] count from the toe on, the width [m] is along the dip of the treads [rad], the rise [m] is that of the
+    base from a column to the next, mu is tan(phi).
     """
     push = 0.0
     sine = math.sin(dip)

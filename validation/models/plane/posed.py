@@ -86,14 +86,9 @@ def own_scene(name: str) -> Scene:
 def problems_of(
     group: str, numbers: Mapping[str, Numbers], more: Mapping[str, Iterable[PlaneCase]]
 ) -> dict[str, PlaneProblem]:
-    """Return the problems of a group of `problems.toml` by name.
+    """Return the problems of a group of `problems.toml` by name, with more cases than the table's.
 
-    Parameters
-    ----------
-    numbers
-        The functions by name that say what is measured.
-    more
-        Cases of problems beside those of the table.
+    `numbers` are the functions that say what is measured.
     """
     problems = {}
     for name, stated in TABLE[group].items():

@@ -1,8 +1,8 @@
 """The problems of boxes on a ground: what is measured on an answer, its exact value, and the band around it.
 
-An answer is positions. Its numbers are held against closed forms (`validation.theory.boxes`), and the bands are what
-one per cent of a datum changes: data of a body and its contact are not known to better than that, an error below it
-changes nothing for who uses the answer.
+An answer is positions, held against closed forms (`validation.theory.boxes`). The bands are what one per cent of a
+datum changes: data of a body and its contact are not known to better than that, and an error below it changes nothing
+for who uses the answer.
 """
 
 from __future__ import annotations
@@ -362,7 +362,7 @@ def problem_posed(scene: Scene) -> PlaneProblem:
     Raises
     ------
     InputError
-        It is none of them; what is measured on any other scene of blocks, and against what, nobody has said.
+        It is none of them: nobody has said what is measured on any other scene of blocks.
     """
     problems = {**box_problems(), **canon_problems()}
     name = scene.name.removeprefix(PREFIX).partition("[")[0]
