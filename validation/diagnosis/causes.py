@@ -19,9 +19,9 @@ from validation.theory.edges import edge
 
 BENIGN_COMPLIANCE = 0.05  # share of the static displacement that a base may add before the springs are in question
 ROUND_EXACT = 1e-6  # relative error that a fit without noise leaves of a factor
-ROUND_DIGITS = 2  # significant digits of a factor that a person types, and that no base has by chance
-ROUND_ERROR = 1e-3  # relative error of a factor, beyond which its digits are not known well enough to be called round
-TRIALS = 21  # dead bands that are tried on either side for the interval in which one lies
+ROUND_DIGITS = 2  # significant digits of a factor that a person types, and no base has by chance
+ROUND_ERROR = 1e-3  # relative error beyond which the digits of a factor are not known well enough
+TRIALS = 21  # dead bands that are tried on either side for the interval of one
 WIDEST_BAND = 5.0  # over the fitted one, that is tried
 BAND_ERROR = 3.2e-4  # relative, to which an end of that interval is found
 SAME_MISFIT = 1e-3  # relative: rows that are no better and no worse
@@ -74,7 +74,7 @@ DERIVED: dict[str, Callable[[Rectangle, Variant], float]] = {  # numbers that ar
 
 
 def all_benign(ids: Iterable[str]) -> bool:
-    """Whether integrator and contact law are as they should be."""
+    """Whether no cause is a fault of integrator or contact law."""
     return all(CAUSES[name].benign for name in ids)
 
 
@@ -142,7 +142,7 @@ def values_of(rectangle: Rectangle, ids: Sequence[str], v: Variant) -> dict[str,
 
 
 def intervals_of(target: Target, explanation: Fit, ids: Sequence[str]) -> dict[str, tuple[float, float]]:
-    """Return the 95 % interval of every value of an explanation that was fitted, or that the rows leave open."""
+    """Return the 95 % interval of every value of an explanation that was fitted or is left open."""
     values = values_of(target.column, ids, explanation.variant)
     ends: dict[str, tuple[float, float]] = {}
     for name, interval in intervals(explanation).items():

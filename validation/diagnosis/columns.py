@@ -27,11 +27,11 @@ from validation.solvers.columns.names import column_of
 if TYPE_CHECKING:
     from dda.bodies.column_history import ColumnResult
 
-REPEATS = 300  # runs of a scene for one history, about: compiled code pays
+REPEATS = 300  # runs of a scene for one history: compiled code pays
 WIDE = 1e6  # times a gap, that never closes
 LEAST_LIMIT = 2  # solves of a step: no program gives up after fewer
 PARTS = (2, 4)  # steps of a program in one of the scene's
-NO_FRICTION = 1e-9  # of the strength: what slips all the time, which no scene can state
+NO_FRICTION = 1e-9  # of the strength: it slips all the time, which no scene can state
 BONDED = "bonded"  # among the values of a change, no key of scenes: contacts carry tension and never slip
 
 

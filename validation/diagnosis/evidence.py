@@ -1,7 +1,6 @@
 """What can be measured of a history: where it leaves what the scene expects, and what a person would look at in turn.
 
-Does it read, is it bounded, is each column right by itself, where does it come to rest, at which frequency and with
-which damping does it swing. Every stage puts the file beside the scene's own history; none depends on a fit.
+Every stage puts the file beside the scene's own history; none depends on a fit.
 """
 
 from __future__ import annotations
@@ -28,7 +27,7 @@ from validation.runs.numbers import share_text
 Kind = Literal["phase", "amplitude", "damping", "offset"]
 DEPARTED = 1e-3  # of the largest displacement: a smaller difference is no departure
 NOISE = 4.0  # standard deviations
-BEYOND = 1e9  # times as large as anything that the scene does: no unit is so wrong
+BEYOND = 1e9  # times anything that the scene does: no unit is so wrong
 GROWTH = 100.0  # times as large in the last third as in the first, and as anything that the scene does
 CLOSE_STATIC, CLOSE_FREQUENCY, CLOSE_DAMPING = 1e-3, 1e-3, 0.02  # relative, and of a ratio's size: what counts as equal
 ROWS_IN_WORDS = 3
@@ -147,14 +146,14 @@ def growth(values: Array, expected: Array) -> float | None:
 
 
 def reading_stage(reading: Reading) -> Stage:
-    """Return whether a history reads as the scene's, with its errors of sign and unit and what differs in its times."""
+    """Return whether a history reads as the scene's: its errors of sign and unit, what differs in its times."""
     note = reading.stepping.note
     words = ", ".join(reading.slips) or "units, signs and columns are the scene's"
     return Stage("reading", not reading.slips, words + (f"; {note}" if note else ""), {})
 
 
 def words_of_rows(single_rows: Sequence[tuple[str, int, float]]) -> str:
-    """Return single rows by column and step, with their errors over the column's largest value."""
+    """Return single rows by column and step, with errors over the column's largest value."""
     words = [
         f"{name.replace('_', ' ')} in step {step}, {share_text(error, 2)} off" for name, step, error in single_rows
     ]
@@ -163,7 +162,7 @@ def words_of_rows(single_rows: Sequence[tuple[str, int, float]]) -> str:
 
 
 def single_rows_stage(single_rows: Sequence[tuple[str, int, float]]) -> Stage:
-    """Return the stage of single rows that stand out of what the rest of the history says."""
+    """Return the stage of single rows that stand out of the rest of the history."""
     return Stage("rows", False, words_of_rows(single_rows), {"rows": float(len(single_rows))})
 
 

@@ -175,7 +175,7 @@ def numbers_of_layers(scene: Scene) -> Iterator[Number]:
 
 
 OF_WAVES = "the modulus of the waves, by Young's modulus or Poisson's ratio,"
-MOST_JOINTS = 8  # or layers, whose numbers are tried one by one: with more, hardly one stands out
+MOST_JOINTS = 8  # or layers, whose numbers are tried one by one: of more, hardly one stands out
 
 
 def _of_contacts(scene: Scene) -> Iterator[Number]:
@@ -205,7 +205,7 @@ def _stated(scene: Scene, key: str) -> Any:
 
 
 def _plain(scene: Scene, *tables: str) -> Iterator[Number]:
-    """Yield what is larger by a factor of a key, of tables of keys; later tables have other names for them."""
+    """Yield the keys of tables that may be wrong by a factor; later tables have other names for them."""
     rows = {key: row for table in tables for key, row in TABLE[table].items()}
     for key, (cause, name) in rows.items():
         value = _stated(scene, key)

@@ -28,7 +28,7 @@ UNITS = (1e-3, 1e3)  # factors of a datum in other units: mm, g, kPa, or MPa for
 IN_UNITS = frozenset({"density-factor", "young-factor", "springs-factor", "load-factor"})
 NEAR_UNIT = 0.02  # relative, of a fitted factor that is said to be one of units: the rest is the fit's
 SPAN = 0.05  # of u, that a step of a fit is measured in
-BESIDE_NOTHING = 1e-12  # u that a step of the fit's own length has brought to zero but for rounding
+BESIDE_NOTHING = 1e-12  # u that a step of the fit has brought to zero but for rounding
 TOLD_APART = 1.5e-8  # step of a derivative there, the root of a rounding
 FIRST_ROUNDS = 3  # after which a fit that gets nowhere is given up
 HALVED = 0.5  # of the remainder at the start
@@ -109,7 +109,7 @@ def nearest_start(residual: Residual, change: CandidateChange[Change]) -> Fitted
 
 
 def nearest(candidates: Sequence[Fitted[Change]], number: int, least: float) -> list[Fitted[Change]]:
-    """Return so many of the candidates that leave least, and all that leave no more than `least`, the best first."""
+    """Return so many candidates that leave least, and all that leave no more than `least`, the best first."""
     ordered = sorted(candidates, key=lambda candidate: candidate.remainder)
     bar = max(ordered[min(len(ordered), number) - 1].remainder, least) if ordered else least
     return [candidate for candidate in ordered if candidate.remainder <= bar]
@@ -154,7 +154,7 @@ def _least_squares(
     known = lru_cache(maxsize=4)(residual)
 
     def slope(u: Array) -> Array:
-        """Return the derivative by a step relative to u, of rounding beside a span by one that a double can tell."""
+        """Return the derivative by a step relative to u, beside zero by one that a double can tell."""
         x = float(u[0])
         step = nudge * x if abs(x) > BESIDE_NOTHING else TOLD_APART
         return np.asarray((known(x + step) - known(x)) / step)[:, None]

@@ -26,7 +26,7 @@ NTDDA_COLUMNS = 9  # step, time, dt, x, y, cumulative displacement, vx, vy, spee
 LEAST_ROWS = 4
 LARGEST = 1e100  # the squares of larger numbers overflow
 SAME_STEP = 1e-3  # relative; times are often printed with four digits
-MOST_STEPS = 10_000  # every explanation that is tried steps through all of them: a minute or two, and 200 MB
+MOST_STEPS = 10_000  # every explanation steps through all of them: a minute or two, and 200 MB
 LARGEST_FILE = 100_000_000  # bytes: a thousand points of so many rows
 
 
@@ -69,7 +69,7 @@ def read(path: Path, columns: Mapping[str, str] | None = None, scale: Mapping[st
     Parameters
     ----------
     path
-        The file; a table may be separated by commas, semicolons, tabs or blanks, with comments after ``#`` or ``%``.
+        A table may be separated by commas, semicolons, tabs or blanks, with comments after ``#`` or ``%``.
     columns
         Our column name to theirs; for a measured-point file ``{"displacement": "measpoint2"}`` picks a point.
     scale
@@ -98,7 +98,7 @@ def read(path: Path, columns: Mapping[str, str] | None = None, scale: Mapping[st
 
 
 def _table(text: str, path: Path, columns: Mapping[str, str]) -> tuple[dict[str, Array], dict[str, float]]:
-    """Return our columns of a table, and the factors by which those whose header names another unit become SI."""
+    """Return our columns of a table, and the factors by which those in other units become SI."""
     rows = rows_of(text)
     if not rows:
         raise InputError("must hold a history", source=path, value="an empty file")
@@ -164,9 +164,9 @@ def _place(ours: str, theirs: str, names: list[str], path: Path) -> int | None:
 def _measured_point(text: str, path: Path, columns: Mapping[str, str]) -> tuple[dict[str, Array], dict[str, float]]:
     """Return time, displacement and dt of one measured point, which are in SI.
 
-    The file gives the position with seven digits, so that a displacement keeps few of them, and its unsigned size
-    with seven digits of its own. The sign is that of the summed steps (velocity is the step's displacement over dt),
-    or, where rows are missing, that of the position relative to the start.
+    The file gives the position with seven digits, few of them of the displacement, and the displacement's unsigned size
+    with seven. The sign is that of the summed steps (velocity is the step's displacement over dt) or, where rows are
+    missing, of the position relative to the start.
     """
     points = dict(re.findall(r"(measpoint\d+)\s*=\s*\[([^\]]*)", text))
     name = columns.get(DISPLACEMENT, next(iter(points)))

@@ -63,7 +63,7 @@ def histories(rectangle: Rectangle, variants: Sequence[Variant], steps: Array) -
 
 
 def _stepped(rectangle: Rectangle, variants: Sequence[Variant], steps: Array) -> Histories:
-    """Return what variants compute under loads that are there at once, those of one kind together."""
+    """Return what variants compute under loads that are there at once."""
     is_equal = len(steps) > 0 and float(np.ptp(steps)) <= UNEQUAL * float(steps[0])
     groups: dict[tuple[Any, ...], list[int]] = {}
     for j, v in enumerate(variants):
@@ -96,7 +96,7 @@ def _unknowns(rectangle: Rectangle, v: Variant) -> int:
 
 @dataclass(frozen=True, eq=False)
 class Equations:
-    """What a step holds apart from the motion, one of each for every variant; d unknowns."""
+    """What a step holds apart from the motion, of every variant; d unknowns."""
 
     mass: Array  # M, (variants, d, d)
     stiffness: Array  # K, (variants, d, d)
@@ -127,11 +127,10 @@ class Stepper:
         self.variants = variants
         self.d = unknowns
         self.size = 4 + 3 * unknowns
-        # where x, U and W stand in a state
+        # places in a state
         self.x = slice(2, 2 + unknowns)
         self.U = slice(2 + unknowns, 2 + 2 * unknowns)
         self.W = slice(2 + 2 * unknowns, 2 + 3 * unknowns)
-        # every number of the variants by its name, one array each
         numbers = {field.name: np.array([getattr(v, field.name) for v in variants]) for field in fields(Variant)}
         self.of = of = SimpleNamespace(**numbers)
         numbers_of_stages = np.array([stages(v) for v in variants])  # (variants, stages, numbers)
@@ -154,7 +153,6 @@ class Stepper:
         soft = 0.0 if unknowns == WITH_BASE else of.softness
         self.springs = rectangle.normal * np.exp(-soft)
         self.base_width = rectangle.width * self.wide  # at rest [m]
-        # what the scene's own matrices hold of every variant's
         model = rectangle.model
         normal, shear = dda.spring_vectors(model.block, 0)
         of_block = model.mass[PLACES, PLACES][:, None] * of.density
@@ -248,7 +246,7 @@ class Stepper:
         return np.asarray(np.linalg.inv((1 - a_m) * q.mass + (1 - a_f) * part))
 
     def stage_matrix(self, q: Equations, dt: float, stage: int) -> Array:
-        """Return the matrix of a stage, by its unit vectors: of the start and, of a second one, of the middle."""
+        """Return the matrix of a stage by unit vectors of the start and, of a second one, of the middle."""
         units = np.eye((1 + stage) * self.size)[:, None, :]
         middle = units[..., self.size :] if stage else None
         return np.moveaxis(self.step(q, self.stages[stage], dt, units[..., : self.size], middle), 0, -1)

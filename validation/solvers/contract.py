@@ -114,7 +114,7 @@ class Prepared:
         return None
 
     def history_run(self) -> Run:
-        """Make the steps of a scene whose step is within the limit, or is allowed to exceed it."""
+        """Make the steps; the limit of a step has been checked."""
         raise NotImplementedError
 
     def static(self) -> Mapping[str, float]:
@@ -145,7 +145,7 @@ class Prepared:
             return self.amplitudes(frequencies, exact)
 
     def amplitudes(self, frequencies: Array, exact: bool) -> Mapping[str, Complex]:
-        """Return the response of a scene whose step is within the limit, or is allowed to exceed it."""
+        """Return the response; the limit of a step has been checked."""
         raise NotReported("no frequency response is reported")
 
     def switches(self) -> tuple[Switch, ...]:
@@ -205,11 +205,11 @@ class Solver:
         raise InputError(f"{self.name} takes no option", field="solver", value=repr(text))
 
     def applicable(self, scene: Scene) -> str | None:
-        """Return None, or why this solver cannot run the scene, apart from features that it does not handle."""
+        """Return None, or why this solver cannot run the scene, apart from features."""
         return None
 
     def refusal(self, scene: Scene) -> str | None:
-        """Return None, or why the scene is refused: a feature that the solver does not handle, or `applicable`."""
+        """Return None, or why the scene is refused, for its features or by `applicable`."""
         if refused := self.refused_features(scene):
             return refused
         if self.only and self.only not in features.of(scene):
@@ -238,14 +238,12 @@ class Solver:
         return {}
 
     def prepare(self, scene: Scene, full: bool = False) -> Prepared:
-        """Build the scene's model once; `full` switches the numerical savings off.
-
-        Where a library is absent, what is prepared is `NotInstalled`.
+        """Build the scene's model once, `NotInstalled` without its library; `full` switches numerical savings off.
 
         Raises
         ------
         InputError
-            The scene has features that the solver does not handle: nothing is asked of it as if they were absent.
+            The scene has features that the solver does not handle.
         """
         if reason := self.refused_features(scene):
             raise InputError(f"solver {self.name}: {reason}", source=scene.name)
@@ -253,7 +251,7 @@ class Solver:
         return self.build(scene, full) if absent is None else NotInstalled(scene, absent)
 
     def build(self, scene: Scene, full: bool) -> Prepared:
-        """Build the model of a scene whose features the solver handles; what a solver of models overrides."""
+        """Build the model of a scene whose features the solver handles; a solver of models overrides it."""
         if type(self).solve is Solver.solve:
             raise NotImplementedError(f"{type(self).__name__} must define build or solve")
         return PreparedByFunction(self, scene, full)

@@ -1,4 +1,4 @@
-"""Solvers that are no Python: histories that a program has left in files, and programs that are started.
+"""Solvers that are no Python: histories in files, and programs that are started.
 
 A program reads a scene from its standard input, a key and its values in a line (`validation.scenes.plain.lines`), and
 prints the history as a table. It ends with status 77 where the scene is not for it, and says why on standard error.
@@ -42,7 +42,7 @@ class Outside(Solver):
         self.name = place
 
     def unhandled(self, scene: Scene) -> list[str]:
-        """Return nothing: whose the history is knows what it is of."""
+        """Return nothing: who has the history knows what it is of."""
         return []
 
     def parts(self) -> frozenset[str]:
@@ -58,13 +58,7 @@ class Outside(Solver):
         raise NotImplementedError
 
     def checked(self, scene: Scene, text: str | None, path: Path) -> Run:
-        """Return the run of a table, checked as that of a user's solver is.
-
-        Raises
-        ------
-        DefectsError
-            It is no such history; every defect is named.
-        """
+        """Return the run of a table, checked as that of a user's solver is; a `DefectsError` names every defect."""
         instants = scene.time.step * np.arange(1.0, scene.time.steps + 1)
         names = (*scene.run.columns, *OF_BLOCK)
         units = {name: unit_of(name, scene.kind.columns) for name in names}

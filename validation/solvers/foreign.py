@@ -76,7 +76,7 @@ def _wrong_units(scene: Scene, history: History, expected: Array, reference: His
 
 
 def force(scene: Scene, history: History, reference: History) -> str | None:
-    """Say that the pressure is a force, if it is larger by the length of the base and the motion is the expected one.
+    """Say that the pressure is a force, if it is larger by the length of the base and the motion is as expected.
 
     With one spring in place of two the pressure is larger by two, and so is the gap: no force on a base of 2 m.
     """

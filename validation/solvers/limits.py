@@ -69,11 +69,7 @@ def check_dampers(scene: Scene) -> None:
 
     A mass m on a dashpot c alone, A = -(c / m) V, has V1 / V0 = (gg - (1 - delta) x) / (1 + delta x) with
     x = c dt / m: it grows from x = (1 + gg) / (1 - 2 delta) on. The mass beside the dashpot is that of an element.
-
-    Raises
-    ------
-    InputError
-        The scene has a dashpot and delta below 1/2, and does not allow it.
+    An `InputError`, unless the scene allows it.
     """
     t = scene.time
     if t.scheme != "newmark" or t.delta >= 0.5 or t.allow_unstable:
@@ -94,7 +90,7 @@ def check_dampers(scene: Scene) -> None:
 def discounts(scene: Scene) -> tuple[float, ...]:
     """Return the kinetic discounts gg between which the critical w dt lies.
 
-    Its square is a ratio of two linear functions of gg, so that the ends of the range of an adaptive gg bound it.
+    Its square is a ratio of two linear functions of gg, bounded by the ends of the range of an adaptive gg.
     """
     if scene.damping.kinetic == "adaptive":
         return scene.damping.floor, 1.0

@@ -64,8 +64,8 @@ def record(scene: Scene, **parts: Any) -> ContactRecord:
 def end_weight(scene: Scene) -> float | None:
     """Return the weight of the contact force at a step's end in the step's impulse; None where it is no such sum.
 
-    It is delta of Newmark's scheme, and 1 of a contact force that is fully implicit or the impulse of an impact over
-    dt. The conserving rule and the other schemes take forces between the steps, or forces of several.
+    It is delta of Newmark's scheme, and 1 of a contact force that is fully implicit or an impact's impulse over dt. The
+    conserving rule and the other schemes take forces between the steps, or forces of several.
     """
     if scene.time.scheme != "newmark":
         return None
@@ -76,7 +76,7 @@ def end_weight(scene: Scene) -> float | None:
 def end_weight_of_column(scene: Scene) -> float:
     """Return the weight of a column's contact force at a step's end: delta, or 1/2, true to second order of others.
 
-    The momentum of the column does not give the impulse at its foot, so that there is no exact sum to take instead.
+    The momentum of the column does not give the impulse at its foot: there is no exact sum to take instead.
     """
     return scene.time.delta if scene.time.scheme == "newmark" else 0.5
 

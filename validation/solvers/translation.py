@@ -91,13 +91,7 @@ def tension_note(history: History) -> tuple[str, ...]:
 
 
 def check_columns(scene: Scene, solver_columns: tuple[str, ...]) -> None:
-    """Refuse columns that a solver does not have.
-
-    Raises
-    ------
-    InputError
-        `[run] columns` names an unknown one.
-    """
+    """Refuse columns that a solver does not have by an `InputError`."""
     unknown = [name for name in scene.run.columns if name not in solver_columns]
     if unknown:
         raise InputError(

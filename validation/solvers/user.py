@@ -48,9 +48,9 @@ HOME = Path(__file__).resolve().parents[2]
 class UserSolver(Solver):
     """A user's ``solve(scene)``, or an object or class with it and, where it likes, `static` and `modes`."""
 
-    # what it reads of a scene cannot be known either: two scenes that differ anywhere are two cases
+    # what it is made of and reads cannot be known: it runs afresh, and scenes that differ anywhere are two cases
     sections = ("damping", "fem", "time", "run")
-    cached = False  # what it is made of cannot be known, so it always runs afresh
+    cached = False
 
     def __init__(self, name: str, target: str) -> None:
         self.name = name
@@ -77,13 +77,7 @@ class UserSolver(Solver):
         return frozenset(self._asked({"parts": sorted(PARTS)}).get("parts", PARTS))
 
     def check_module(self) -> None:
-        """Refuse a solver whose module is nowhere where its process looks; nothing is imported for it.
-
-        Raises
-        ------
-        InputError
-            There is no such module.
-        """
+        """Refuse by an `InputError` a module that is nowhere where its process looks; nothing is imported for it."""
         module = self.target.partition(":")[0]
         folders: Sequence[str] | None = [os.getcwd(), *filter(None, sys.path)]
         parts = module.split(".")

@@ -36,7 +36,7 @@ NAMED: dict[str, tuple[float, float]] = {
 NUMBERS = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
 SPAN: dict[str, float] = {name: row["span"] for name, row in NUMBERS.items()}
 LEAST_FACTOR, LARGEST_FACTOR = 1e-7, 1e7  # of what has no range of its own: other units
-DIFFERENCE = 1e-6  # of the spans, for the Jacobian: root of the rounding of a relative history, about
+DIFFERENCE = 1e-6  # of the spans, for the Jacobian: about the root of the rounding of a relative history
 NORMAL_95 = 1.96
 UNFELT = 1e-12  # of the largest curvature: keeps the equations of a number without effect solvable
 SETTLED = 1e-3  # share of a misfit: a fit that gains less has arrived
@@ -177,7 +177,7 @@ def intervals(solution: Fit) -> dict[str, Interval]:
     widths = np.sqrt(np.sum(parts**2, axis=1))
     intervals_by_name = {}
     for name, width in zip(solution.free, widths.tolist(), strict=True):
-        # of a number without effect nothing is known, also where nothing is left
+        # nothing is known of a number without effect, also where nothing is left
         half = NORMAL_95 * sigma * width * SPAN[name] if math.isfinite(width) else math.inf
         intervals_by_name[name] = Interval(float(getattr(solution.variant, name)), half)
     return intervals_by_name

@@ -122,26 +122,14 @@ class BoxesOnGround:
 
 
 def boxes_of(scene: Scene) -> BoxesOnGround:
-    """Return the boxes on a ground that a scene is of.
-
-    Raises
-    ------
-    ValueError
-        It is of something else.
-    """
+    """Return the boxes on a ground that a scene is of; a ValueError if it is of something else."""
     if "plane" not in scene.tables():
         raise ValueError(f"it must be of boxes on a ground, got {scene.kind_in_words}")
     return boxes_on_ground(scene.table(PlaneSection))
 
 
 def boxes_on_ground(plane: PlaneSection) -> BoxesOnGround:
-    """Return the boxes on a ground that a table of the plane states.
-
-    Raises
-    ------
-    ValueError
-        It states something else.
-    """
+    """Return the boxes on a ground that a table of the plane states; a ValueError if it states something else."""
     others = [name for name in (*BODIES, "observe", "pair", "bond", "load", "touch") if getattr(plane, name)]
     if others or plane.ramp:
         raise ValueError(f"boxes on a ground must have one contact and weight alone, got {', '.join(others) or 'ramp'}")
@@ -170,13 +158,7 @@ def boxes_on_ground(plane: PlaneSection) -> BoxesOnGround:
 
 @functools.cache
 def harmonic(path: str) -> tuple[float, float]:
-    """Return A [m] and f [Hz] of a record that is A (1 - cos(2 pi f t)) along x.
-
-    Raises
-    ------
-    ValueError
-        It is another motion.
-    """
+    """Return A [m] and f [Hz] of a record that is A (1 - cos(2 pi f t)) along x; a ValueError if it is another."""
     from scipy.optimize import curve_fit
 
     record = read_record(Path(path))

@@ -1,4 +1,4 @@
-"""The exact motion of rigid boxes on a ground, where it is known; every other scene of the plane is refused by name."""
+"""The exact motion of rigid boxes on a ground, where it is known; others are refused by name."""
 
 from __future__ import annotations
 
@@ -86,13 +86,7 @@ class ExactBoxes(Prepared):
 
 
 def motion_of(scene: Scene) -> Motion:
-    """Return the motion of a scene of boxes on a ground.
-
-    Raises
-    ------
-    ValueError
-        None is known: why.
-    """
+    """Return the motion of a scene of boxes on a ground; a ValueError says why none is known."""
     ground = boxes_of(scene)
     for name in scene.run.columns:
         if name not in ground.columns:
@@ -124,7 +118,7 @@ def _unless(is_unknown: bool, why: str) -> None:
 
 
 def _poses(ground: BoxesOnGround, time: Array, force: Any = 0.0, **moved: Array) -> dict[str, Array]:
-    """Return the columns of a box alone: those that are given, the others as they are at t = 0."""
+    """Return the columns of a box alone: those that are given, the others as at t = 0."""
     (box,) = ground.boxes
     columns = {ground.force_columns[0]: force}
     columns |= {f"{box.name}.{part}": moved.get(part, getattr(box, part)) for part in POSE}
@@ -315,7 +309,7 @@ def _shaken(ground: BoxesOnGround, box: Box) -> Motion:
 
 
 def _turns_off(box: Box) -> bool:
-    """Whether the velocity at t = 0 is another one than that of a rotation about a lower corner."""
+    """Whether the velocity at t = 0 is not that of a rotation about a lower corner."""
     across = -box.spin * box.height / 2
     upwards = abs(box.spin) * box.width / 2
     allowed = ROLLS * abs(box.spin) * math.hypot(box.width, box.height)
@@ -353,7 +347,7 @@ def _about_corner(scene: Scene, ground: BoxesOnGround, box: Box) -> Motion:
             atol=ACCURACY,
         )
         psi, rate = solution.y
-        # from the left corner, about which a positive rotation turns; to the right all is mirrored
+        # about the left corner, a positive rotation; to the right all is mirrored
         falling = -radius * (np.cos(psi) * rate**2 + np.sin(psi) * rectangle.rate2 * np.sin(psi))
         force = box.mass * (ground.gravity + falling)
         centre = box.x + sign * (-radius * np.sin(psi) - box.width / 2)

@@ -69,13 +69,7 @@ class ColumnPlace(NamedTuple):
 
 
 def place_of(column: str) -> ColumnPlace:
-    """Return what a column is of by its name.
-
-    Raises
-    ------
-    KeyError
-        If no column is called so.
-    """
+    """Return what a column is of by its name; a KeyError if no column is called so."""
     if match := _OF_CONTACT.fullmatch(column):
         block, corner, on, edge, part = match.groups()
         return ColumnPlace(part, OF_CONTACT[part], contact=(block, int(corner), on, int(edge)))

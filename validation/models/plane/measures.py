@@ -11,7 +11,7 @@ from validation.models.plane.boxes import Box, BoxesOnGround
 from validation.runs.history import Array, History
 
 Rows = NDArray[np.bool_]
-SAME_FALL = 0.05  # of g h^2: what the second difference of a free flight may be off, air damping of programs included
+SAME_FALL = 0.05  # of g h^2: error of the second difference of a free flight, air damping of programs included
 LATE = 1.0  # s at the end of a run, over which its last energy is taken; longer than the flight from 1 m
 
 
@@ -118,7 +118,7 @@ def peak(values: Array) -> float:
 
 
 def contact_time(history: History, gap: Array) -> float | None:
-    """Return how long a gap is closed for the first time [s], the gap being a straight line between rows.
+    """Return how long a gap, linear between rows, is closed for the first time [s].
 
     None where it does not close and open again.
     """

@@ -34,10 +34,7 @@ class HOOKS(PageHooks):
 def recommended_cut(scene: Scene, error: float) -> tuple[str, Recommendation]:
     """Return the static error of the present blocks of a beam, and into how many to cut it.
 
-    Raises
-    ------
-    InputError
-        The blocks are stated one by one.
+    Blocks that are stated one by one are an `InputError`.
     """
     plane = scene.table(PlaneSection)
     if plane.subdivide is None or plane.width is None or plane.height is None:

@@ -47,7 +47,7 @@ from validation.theory.boxes import (
 )
 from validation.theory.rocking import Rectangle
 
-FIRST_ROW = 0.3  # relative, of the height of a box: what it may have changed by at the first row
+FIRST_ROW = 0.3  # of the height of a box: what it may have changed by at the first row
 BOX = "plane.block.1"  # the first box of a scene, after its ground
 MINUTE = 60.0  # s
 SETTLED = 0.5  # s after a landing: what moves away then has rebounded
@@ -57,7 +57,7 @@ SETTLED = 0.5  # s after a landing: what moves away then has rebounded
 
 
 def standing(scene: Scene) -> tuple[JudgedNumber, ...]:
-    """Return the creep of a box that stands on a slope, or how far one slides that does not."""
+    """Return the creep of a box that stands on a slope, or how far another one slides."""
     ground = boxes_of(scene)
     box = ground.boxes[0]
     if ground.friction > ground.slope:
@@ -100,7 +100,7 @@ def restitution(scene: Scene) -> tuple[JudgedNumber, ...]:
 
 
 RESTITUTIONS = (0.0, 0.5, 1.0)
-SPEEDS = (0.1, 1.0, 5.0)  # m/s; programs leave restitution away below a threshold, most often from 0.2 to 1 m/s
+SPEEDS = (0.1, 1.0, 5.0)  # m/s; programs have no restitution below a threshold, mostly 0.2 to 1 m/s
 LANDING = 0.2625  # s after t = 0: in the middle of a row and of the steps of the curves' first runs
 
 
@@ -201,7 +201,7 @@ def _rotation(history: History, ground: BoxesOnGround) -> float:
 
 
 def toppling(scene: Scene) -> tuple[JudgedNumber, ...]:
-    """Return how far a box turns that was started about its corner; of one that may overturn, whether it does."""
+    """Return how far a box turns about its corner; of one that may overturn, whether it does."""
     ground = boxes_of(scene)
     spin = abs(ground.boxes[0].spin)
     if spin >= min(rectangle_of(ground, factor).critical_spin for factor in EITHER_WAY):
@@ -227,7 +227,7 @@ def overturning(scene: Scene) -> tuple[JudgedNumber, ...]:
 
 
 SPINS = (0.95, 0.98, 0.99, 1.01, 1.02, 1.05)  # of the one that just overturns
-DECIDED = 150  # rows: 2.5 s, in which what passes the unstable position has done so
+DECIDED = 150  # rows: 2.5 s, in which the unstable position is passed or not
 
 
 def _toppling_cases() -> Iterator[PlaneCase]:
@@ -279,10 +279,7 @@ def shaken(scene: Scene) -> tuple[JudgedNumber, ...]:
 def impact_of(scene: Scene, stiffness: float = 1.0, mass: float = 1.0) -> SpringImpact:
     """Return the landing of the first box of a scene on its spring, stiffness and mass multiplied by factors.
 
-    Raises
-    ------
-    InputError
-        The scene gives no stiffness.
+    A scene without a stiffness is an `InputError`.
     """
     ground = boxes_of(scene)
     box = ground.boxes[0]

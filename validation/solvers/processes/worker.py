@@ -30,7 +30,7 @@ LAUNCHER_LINE = re.compile(
 
 
 class WorkerDied(RuntimeError):
-    """The worker ended before it answered; the text holds the last lines of its standard error."""
+    """The worker ended before it answered; the text has the last lines of its standard error."""
 
 
 class WorkerHangs(RuntimeError):
@@ -38,7 +38,7 @@ class WorkerHangs(RuntimeError):
 
 
 def stderr_tail(text: str) -> str:
-    """Return why a process ended: the errors that its standard error names, else its last lines that say something."""
+    """Return why a process ended: the errors in its standard error, else its last lines that say something."""
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     error_lines = list(dict.fromkeys(line for line in lines if ERROR_LINE.fullmatch(line)))  # two ranks say the same
     other_lines = [line for line in lines if not LAUNCHER_LINE.fullmatch(line)]
@@ -49,7 +49,7 @@ class Worker:
     """A process in a session of its own that answers requests until this one ends, however it ends.
 
     Its standard input closes with this process, which `serve` takes for the end. Threads read what it writes, so that
-    it never waits for a reader, and a reader of ours never for it.
+    neither side waits for the other.
     """
 
     def __init__(self, command: Sequence[str], environment: Mapping[str, str]) -> None:
@@ -109,7 +109,7 @@ class Worker:
                 return answer
 
     def _send(self, data: bytes) -> None:
-        """Send a request, in a thread of its own: a worker that hangs may not read what a pipe cannot hold."""
+        """Send a request, in a thread: a worker that hangs may not read what a pipe cannot hold."""
         with contextlib.suppress(OSError, ValueError):  # nobody reads any more
             while data:
                 data = data[self._process.stdin.write(data) :]
