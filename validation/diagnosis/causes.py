@@ -17,12 +17,12 @@ from validation.diagnosis.variant import Rectangle, Variant
 from validation.runs.numbers import significant
 from validation.theory.edges import edge
 
-BENIGN_COMPLIANCE = 0.05  # share of the static displacement that a base may add before the springs are in question
-ROUND_EXACT = 1e-6  # relative error that a fit without noise leaves of a factor
+BENIGN_COMPLIANCE = 0.05  # of the static displacement, that a base may add before the springs are in question
+ROUND_EXACT = 1e-6  # relative error of a factor by a fit without noise
 ROUND_DIGITS = 2  # significant digits of a factor that a person types, and no base has by chance
 ROUND_ERROR = 1e-3  # relative error beyond which the digits of a factor are not known well enough
 TRIALS = 21  # dead bands that are tried on either side for the interval of one
-WIDEST_BAND = 5.0  # over the fitted one, that is tried
+WIDEST_BAND = 5.0  # that is tried, over the fitted one
 BAND_ERROR = 3.2e-4  # relative, to which an end of that interval is found
 SAME_MISFIT = 1e-3  # relative: rows that are no better and no worse
 HALF = 0.5  # steps late: a mean of two

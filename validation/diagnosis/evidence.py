@@ -220,7 +220,6 @@ def _motion(target: Target, expected: Array) -> list[Stage]:
 
 
 def _beside(name: str, verb: str, unit: str, file: float | None, scene: float | None, close: float) -> Stage:
-    """Return one measured number beside the scene's."""
     if file is None or scene is None:
         return Stage(name, None, "not told by these rows", {"file": file, "scene": scene, "ratio": None})
     least = LEAST_DAMPING if name == "damping" else 0.0

@@ -48,7 +48,7 @@ def relatives(target: Target, scene: Variant, verdict: Verdict, ids: Sequence[st
 
 
 def sign_or_gravity(target: Target, ids: Sequence[str], corrected: Sequence[Slip]) -> list[dict[str, Any]]:
-    """Return the two causes of a history whose columns are all reversed, where gravity is the only load."""
+    """Return the two causes of a history with all columns reversed, under gravity alone."""
     columns = 1 if target.pressure is None else 2
     c = target.column
     if list(ids) != ["sign"] or len(corrected) < columns or c.pressure or not c.gravity:
@@ -58,7 +58,7 @@ def sign_or_gravity(target: Target, ids: Sequence[str], corrected: Sequence[Slip
 
 
 def as_good(target: Target, verdict: Verdict) -> list[dict[str, Any]]:
-    """Return the explanations that the file cannot tell from the best one, or the other names of a time scheme."""
+    """Return the explanations as good as the best one, or the other names of a time scheme."""
     scene = verdict.scene_fit.variant
     if verdict.alike:
         return [_of_explanation(target, explanation, scene) for explanation in (verdict.best, *verdict.alike)]

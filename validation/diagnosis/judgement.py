@@ -145,7 +145,6 @@ def _of_swapped(scene: Scene, foreign: Foreign, pair: tuple[str, str], tolerance
 
 
 def _refuse_what_is_not_known(scene: Scene) -> None:
-    """Refuse a scene that compare does not step."""
     DiagnosisHooks.of(scene).check(scene)
     features.refuse_damping(scene, "compare")
     features.refuse_sweep(scene)

@@ -125,16 +125,9 @@ def fitted(
 ) -> Fitted[Change]:
     """Return a candidate at the number that comes nearest, as it is where it has none.
 
-    Parameters
-    ----------
-    rounds
-        Evaluations, those of derivatives apart.
-    nudge
-        Relative change of u for a derivative.
-    settled
-        Relative gain at which the fit has arrived.
-    hopeless
-        Remainder beyond which a fit is given up whose first rounds have not halved it, nor would its slope.
+    Rounds are evaluations but for those of derivatives, for which u changes by the relative `nudge`; `settled` is the
+    relative gain at which the fit has arrived, `hopeless` the remainder beyond which it is given up if its first rounds
+    have not halved it, nor would its slope.
     """
     if not candidate.change.starts:
         return replace(candidate, remainder=norm(residual(0.0)))

@@ -103,7 +103,7 @@ class Reading:
 
     @property
     def displacement(self) -> Array:
-        """Its values [m]."""
+        """The displacement [m]."""
         return np.asarray(self.recorded[0])
 
     @property
@@ -174,7 +174,7 @@ def without_slips(
         values, stated = (getattr(foreign, place) for place in FIELDS[name])
         if values is None:
             continue
-        # the units of the last digits as the file has them: in other units they are not seen any more
+        # units of the last digits as in the file: in other units they are not seen
         unit = last_digits(values) if stated is None else stated
         columns.append(values * sign / factor)
         units.append(unit / factor)

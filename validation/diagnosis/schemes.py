@@ -1,4 +1,4 @@
-"""The time schemes of candidate changes, each by its family and one number: names, tables and other names.
+"""The time schemes of candidate changes, each by its family and one number.
 
 The tables are those of `validation.theory.stages`. Newmark 1959; Hilber, Hughes and Taylor 1977; Wood, Bossak and
 Zienkiewicz 1980; Chung and Hulbert 1993; Bathe and Baig 2005, with rho_inf Noh and Bathe 2019.
@@ -52,7 +52,7 @@ def stages(v: Variant) -> Stages:
 
 
 def split_of(v: Variant) -> float:
-    """Return the share of the step at which a composite scheme is split; without one, that of equal matrices."""
+    """Return the share of the step at which a composite scheme is split, by default that of equal matrices."""
     return v.split or tables.equal_split(v.spectral)
 
 

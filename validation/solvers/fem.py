@@ -204,7 +204,7 @@ class OpeningMesh(Prepared):
             return solve_unilateral(self.problem, self.scheme, steps, self.contact, self.full, columns=columns)
 
     def switches(self) -> tuple[Switch, ...]:
-        """Return the switches of the whole base between the steps: no point of it presses, or some do."""
+        """Return the switches of the whole base between the steps: no point presses, or some do."""
         return switches_between_steps({"base": self.is_open}, self.time)
 
     def contact_record(self) -> ContactRecord:

@@ -1,7 +1,7 @@
 """Solvers that are no Python: histories in files, and programs that are started.
 
 A program reads a scene from its standard input, a key and its values in a line (`validation.scenes.plain.lines`), and
-prints the history as a table. It ends with status 77 where the scene is not for it, and says why on standard error.
+prints the history as a table. It ends with status 77 if the scene is not for it, and says why on standard error.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from validation.solvers.processes.worker import stderr_tail
 from validation.solvers.user import ALLOWANCE, UserSolver, base_limit
 
 ENDING = ".csv"
-REFUSED = 77  # exit status, as test harnesses of make take it for a test that is left out
+REFUSED = 77  # exit status, by which test harnesses of make leave a test out
 
 
 class Outside(Solver):

@@ -1,4 +1,4 @@
-"""Stability limits of conditionally stable schemes: a step beyond is refused unless the scene allows it."""
+"""Stability limits of conditionally stable schemes, beyond which a step must be allowed by the scene."""
 
 from __future__ import annotations
 

@@ -74,7 +74,7 @@ def _of_machine() -> float:
 
 
 def of_groups(root: Path) -> Iterator[float]:
-    """Yield what the control group of this process leaves, and each above it up to the root's (version 2 of Linux).
+    """Yield what the control group of this process leaves, and each above it (version 2 of Linux).
 
     Pages of files can be dropped and do not count as held.
     """

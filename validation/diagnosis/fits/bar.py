@@ -24,13 +24,13 @@ ARITHMETIC = 1e-8  # of the largest value: half the digits of double precision, 
 WINDOW = 24  # samples: twice the order of the recurrence (static value, four modes, rows at rest)
 FEWEST = 16  # samples: eight of a window, four powers
 LONGEST = 600  # samples that the noise is estimated from
-MARGIN = 1.6  # of the estimated noise: tens of singular values tell it to a fifth, least squares take some more
+MARGIN = 1.6  # of the estimated noise: tens of singular values tell it to a fifth, least squares take more
 LAGS = 10
 SHAPELESS = 4.0  # standard deviations of Ljung and Box's statistic: one white remainder in ten thousand exceeds it
 MEDIAN = 1.4826  # standard deviation of normal noise over the median of its absolute values
 OUTLYING = 6.0  # spreads: of ten million rows of normal noise none is farther away
 ROUNDED = 0.5  # last digits: the most that rounding leaves
-LOST_ROWS = 20  # rows of which at most one is told as a wrong one; of more the whole history is in question
+LOST_ROWS = 20  # rows of which at most one is told as wrong; with more the whole history is in question
 AROUND = 2  # rows at the start, where what dies out stands out too
 
 

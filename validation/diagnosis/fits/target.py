@@ -1,4 +1,4 @@
-"""A history that is to be explained: its rows, what digits and noise may leave of them, what variants show there."""
+"""A history that is to be explained: its rows, what may remain of them, what variants show there."""
 
 from __future__ import annotations
 
@@ -43,12 +43,12 @@ class Target:
 
     @property
     def displacement(self) -> Array:
-        """Its values [m]."""
+        """The recorded displacement [m]."""
         return np.asarray(self.recorded[0])
 
     @property
     def pressure(self) -> Array | None:
-        """Its values, if given [Pa]."""
+        """The recorded pressure, if given [Pa]."""
         return np.asarray(self.recorded[1]) if len(self.recorded) > 1 else None
 
     @cached_property

@@ -215,7 +215,7 @@ class RandomSection(GeneratorSection):
         return self
 
     def outlines(self) -> Outlines:
-        """Yield the blocks; corners keep a share of a full turn over their number apart, so that none is a splinter."""
+        """Yield the blocks; corners keep a share of a full turn over their number apart: none is a splinter."""
         random: Any = np.random.Generator(np.random.PCG64(self.seed))
         cell = 2 * self.radii[1]
         least, most = self.corners

@@ -58,7 +58,7 @@ WHOLE = {MOMENTUM: OF_MOMENTUM, ENERGY: OF_ENERGY}
 
 
 class ColumnPlace(NamedTuple):
-    """What a column is of: a block, a contact (block, corner, other block, edge), a pair of blocks, or all blocks."""
+    """What a column is of: a block, a contact (block, corner, other block, edge), a pair, or all blocks."""
 
     part: str  # "x", "normal", "kinetic"
     meaning: tuple[str, str]  # unit, and what it is
@@ -83,7 +83,7 @@ def place_of(column: str) -> ColumnPlace:
 
 
 class PlaneColumns(Mapping[str, ColumnKind]):
-    """What every column of moving blocks holds, by its name; so many that they are not listed."""
+    """What every column of moving blocks holds, by name; too many to be listed."""
 
     def __getitem__(self, column: str) -> ColumnKind:
         place = place_of(column)

@@ -106,7 +106,6 @@ class MovingMesh(Prepared):
         )
 
     def _column(self, result: BodiesResult, column: str) -> Array:
-        """Return a column of a result by its name."""
         place = place_of(column)
         names = [block.name for block in self.assembly.blocks]
         if place.whole == ENERGY:

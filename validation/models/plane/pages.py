@@ -24,7 +24,7 @@ class HOOKS(PageHooks):
     """The blocks of a rectangle, or the contacts of blocks that move."""
 
     def page(self, scene: Scene, question: Question) -> Page:
-        """Return the static error of glued blocks and how to cut them, or what springs and step make of contacts."""
+        """Return the page of glued blocks, or of contacts of moving ones."""
         if scene.table(PlaneSection).is_glued:
             return page_of_cut(scene, question, *recommended_cut(scene, question.error))
         advice = moving_advice(scene, question.error, question.keep_springs)

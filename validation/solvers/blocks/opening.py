@@ -65,7 +65,6 @@ class OpeningBlock(Prepared):
         return to_run(self.scene, result, {**result.columns, **self._contact(result)})
 
     def _contact(self, result: dda.ContactResult) -> dict[str, Array]:
-        """Return the columns of the contacts that are asked for."""
         return {name: contact_column(result, name) for name in self.scene.run.columns if name in (*OPENING, PASSES)}
 
     def switches(self) -> tuple[Switch, ...]:

@@ -133,7 +133,7 @@ class ContactLineColumn(LineColumn):
         return switches_between_steps(states, result.time, slips)
 
     def contact_record(self) -> ContactRecord:
-        """Return what the contacts did in the history that was run; the elements report no energies."""
+        """Return what the contacts did in the history that was run; there are no energies."""
         result = completed(self.result)
         column = self.column
         masses = np.array([stratum.density * stratum.thickness for stratum in column.ground.strata])

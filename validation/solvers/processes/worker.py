@@ -23,7 +23,7 @@ WAITING_LINES = 16  # of what a worker writes and nobody has asked for
 PIECE_SIZE = 2**16  # bytes that are kept of standard error
 EXIT_TIMEOUT = 0.5  # s for a process that has closed its output
 TAIL_LINES = 3  # lines of a dead worker's standard error that are worth telling
-ERROR_LINE = re.compile(r"[\w.]+(Error|Exception)\b.*")  # the line of an error, which a launcher buries under its own
+ERROR_LINE = re.compile(r"[\w.]+(Error|Exception)\b.*")  # which a launcher buries under its own
 LAUNCHER_LINE = re.compile(
     r"[-=*]+|\[[^\]]*:\d+\] .*(help message|help / error messages).*"
 )  # a launcher's rules and advice
@@ -184,8 +184,8 @@ def ask(
 def serve(answer: Callable[[dict[str, Any]], Mapping[str, Any]]) -> None:
     """Answer requests from standard input until it ends; what else is printed goes to standard error.
 
-    Every answer carries its request's number. A copy of this process that `answer` has forked answers nothing. The
-    group of this process ends with it: after its exit hooks, or `GRACE` seconds after the end of its input.
+    Every answer carries its request's number; a copy that `answer` has forked answers nothing. The group of this
+    process ends with it: after its exit hooks, or `GRACE` seconds after the end of its input.
     """
     requests: queue.SimpleQueue[str] = queue.SimpleQueue()
     _in_thread(_take_requests, os.fdopen(os.dup(0)), requests)
