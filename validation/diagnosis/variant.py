@@ -76,7 +76,7 @@ class Variant:
     exact: bool = False  # no scheme: exact in time
     shift: float = 0.0  # steps by which the rows come late; 1/2 is the mean of two steps
     point: float = 0.0  # height of the reported point above the centroid, over half the block's height [-]
-    late: float = 0.0  # the same of the pressure
+    late: float = 0.0  # the same as `shift`, of the pressure alone
     pressure_factor: float = 1.0  # reported over true pressure [-]
     displacement_factor: float = 1.0  # reported over true displacement [-]
 
