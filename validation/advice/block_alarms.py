@@ -29,7 +29,7 @@ RINGING = "contact ringing"
 
 def block_alarms(scene: Scene, rows: RowsBySolver) -> Iterator[Alarm]:
     """Yield the alarms of a block from its finished rows by solver."""
-    # One alarm for the solvers whose contact carries tension; runs that repeat another are not listed.
+    # one alarm for all solvers whose contact carries tension
     values: dict[str, float] = {}
     parts = []
     for solver, row in rows.items():

@@ -162,10 +162,7 @@ def advised(scene: Scene, bound: ColumnLimits, resting: Rest | None = None) -> I
 def column_alarms(scene: Scene, row: Row | None = None) -> Iterator[Alarm]:
     """Yield the alarms of a scene with a column whose contacts open or slip.
 
-    Parameters
-    ----------
-    row
-        Of the judged method's run; without one, what may happen is told.
+    `row` is of the judged method's run; without one, what may happen is told.
     """
     column = scene.table(ColumnSection)
     bound = limits(scene)

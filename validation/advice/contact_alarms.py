@@ -47,15 +47,7 @@ BEYOND = 1.5  # times the peak force of the exact bar from which on a peak is th
 
 
 def contact_alarms(scene: Scene, rows: RowsBySolver) -> Iterator[Alarm]:
-    """Yield the alarms of the judged method's run of a scene with unilateral contact.
-
-    Parameters
-    ----------
-    scene
-        The scene.
-    rows
-        Its finished rows by solver.
-    """
+    """Yield the alarms of the judged method's run of a scene with unilateral contact, by its finished rows."""
     row = first_row(rows, Role.JUDGED)
     if row is None or features.UNILATERAL not in features.of(scene):
         return
@@ -74,7 +66,7 @@ def contact_alarms(scene: Scene, rows: RowsBySolver) -> Iterator[Alarm]:
     limit = landing.hidden_from(scene)
     if limit is not None and scene.time.step > limit:
         yield alarm(HIDDEN, scene.name, {"step": scene.time.step, "limit": limit})
-    # A peak that is that of the springs, not of the body: beyond the exact bar's, on springs stiffer than a wave.
+    # a peak of the springs, not of the body: beyond the exact bar's, on springs stiffer than a wave
     peak = number(row, "contact.peak_force") or 0.0
     exact = number(first_row(rows, Role.TRUTH), "contact.peak_force")
     quarter = landing.quarter_mass_force(scene, 1.0)

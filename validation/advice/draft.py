@@ -40,7 +40,7 @@ def draft(options: Mapping[str, Any], ask: Callable[[str, float], float]) -> str
     Parameters
     ----------
     options
-        `kind` and `rock` by name, block and granite if absent, and numbers by the names of the kind's questions.
+        `kind` and `rock`, block and granite if absent, and numbers by the names of the kind's questions.
     ask
         Returns the answer to a question, given its default.
 
@@ -78,7 +78,6 @@ def draft(options: Mapping[str, Any], ask: Callable[[str, float], float]) -> str
 
 
 def _derived(kind: str, numbers: Mapping[str, float], material: Mapping[str, float]) -> dict[str, Any]:
-    """Return what follows of size and material: springs, blocks and steps."""
     young = material["young"]
     density = material["density"]
     width = numbers.get("width", 0.0)

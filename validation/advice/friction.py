@@ -137,14 +137,14 @@ def friction_alarms(scene: Scene, rows: RowsBySolver) -> Iterator[Alarm]:
             values = {**rate, "run_out": slides.run_out, "braked": slides.braked}
             yield alarm(BRAKES, scene.name, values, gg=t.discount, drag=slides.drag)
         return
-    # Slip that goes on after friction has had the time to stop a speed of g / w_n.
+    # slip that goes on after friction has had the time to stop a speed of g / w_n
     rate_of_slip = number(row, "contact.slip_rate") or 0.0
     stopped = STOPPING * slides.creep / -slides.acceleration if slides.acceleration < 0 else math.inf
     if rate_of_slip > SLOW * slides.creep > 0 and t.duration / 2 > stopped:
         values = {"rate": rate_of_slip, "scale": slides.creep}
         words = {"slope": abs(scene.load.slope), "speed": 1e3 * rate_of_slip, "share": rate_of_slip / slides.creep}
         yield alarm(CREEPS, scene.name, values, slides=slides, **words)
-    # A slope that stands because its ringing is not followed.
+    # a slope that stands because its ringing is not followed
     phase = friction.normal_frequency(scene) * t.step
     is_hidden = phase > COARSE and slides.creep > 0 and not slides.rings_alike
     if scene.load.slope and is_hidden and (Stepping.of(scene).damps or t.discount < 1):

@@ -161,7 +161,7 @@ def _present_error(scene: Scene) -> PresentError | None:
     return PresentError(name, steps * case.time.step, *errors)
 
 
-# ---- in words -------------------------------------------------------------------------------------------------------
+# ---- in words ----
 
 
 def lines(scene: Scene, question: Question, answer: Overview) -> Iterator[str]:

@@ -171,7 +171,7 @@ def checked(solver: str, scene: Scene) -> Solver:
 def stable_step(scene: Scene) -> float:
     """Return the largest stable step of the scene as DDA's solver judges it [s]; infinite where every step is stable.
 
-    The critical w dt of the scheme over the highest natural frequency of the solver's own model, with its contact
+    It is the critical w dt of the scheme over the highest natural frequency of the solver's own model, with its contact
     springs, glue and joints: a spring between two blocks can be far faster than the blocks.
 
     Raises
@@ -261,7 +261,7 @@ def first_mode(scene: Scene, solver: str) -> dict[str, float | None]:
     return {"frequency": mode.frequency, "damping": xi if isinstance(xi, float) else None}
 
 
-# ---- sentences ----------------------------------------------------------------------------------------------------
+# ---- sentences ----
 
 
 def runs(mode: ModeDamping) -> str:

@@ -301,7 +301,7 @@ def all_defects() -> Iterator[None]:
         raise typer.Exit(BAD_INPUT) from None
 
 
-# ---- gates ----------------------------------------------------------------------------------------------------------
+# ---- gates ----
 
 
 def check_loads(source: str) -> None:

@@ -34,30 +34,14 @@ class Number:
 
 @dataclass(frozen=True)
 class Problem:
-    """A question to a program.
+    """A question to a program."""
 
-    Attributes
-    ----------
-    name
-        What tables and answers call it.
-    asks
-        What a program has to get right, in a sentence.
-    title
-        The problem in words.
-    scene
-        The scene; its steps are the instants at which the answer is judged.
-    truth
-        The exact motion; None where numbers are judged.
-    numbers
-        What is measured on an answer in place of the motion.
-    """
-
-    name: str
-    asks: str
-    title: str
-    scene: Scene
-    truth: Truth | None
-    numbers: tuple[JudgedNumber, ...] = ()
+    name: str  # by which tables and answers call it
+    asks: str  # what a program has to get right, in a sentence
+    title: str  # the problem in words
+    scene: Scene  # whose steps are the instants at which the answer is judged
+    truth: Truth | None  # the exact motion; None where numbers are judged
+    numbers: tuple[JudgedNumber, ...] = ()  # that are measured on an answer in place of the motion
 
     @property
     def columns(self) -> tuple[str, ...]:

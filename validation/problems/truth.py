@@ -24,18 +24,10 @@ ROCKING = "rigid rocking"
 
 @dataclass(frozen=True)
 class Truth:
-    """An exact solution of a scene, and up to when it is the scene's.
+    """An exact solution of a scene, and up to when it is the scene's."""
 
-    Attributes
-    ----------
-    name
-        Of the solver, or of the closed form.
-    until
-        Instant up to which answers are judged [s].
-    """
-
-    name: str
-    until: float
+    name: str  # of the solver, or of the closed form
+    until: float  # instant up to which answers are judged [s]
 
 
 def truth_of(scene: Scene) -> Truth:

@@ -110,7 +110,7 @@ def warn_implausible(scene: Scene) -> None:
 _WARNED: set[tuple[str, str]] = set()  # Python's own record of warnings is cleared by every `catch_warnings`
 
 
-# ---- what kinds share ------------------------------------------------------------------------------------------------
+# ---- what kinds share ----
 
 
 def material(

@@ -68,12 +68,7 @@ def midpoints(count: int) -> Array:
 def spring_steps(stages: Stages, omega: float | Array, zeta: float = 0.0) -> Advance:
     """Return the step on a spring, with a dashpot if zeta > 0, or on a rigid stop if omega is infinite.
 
-    Parameters
-    ----------
-    stages
-        The scheme, of `validation.theory.stages`.
-    omega
-        W = sqrt(k/m) dt, finite in an explicit scheme, or an array of finite ones, one for each phase.
+    W = omega is finite in an explicit scheme, or an array of finite numbers, one for each phase.
     """
     is_rigid = bool(np.any(np.isinf(omega)))
 

@@ -1,4 +1,4 @@
-r"""A time step of a scheme and what it makes of a harmonic motion, written apart from the solvers.
+r"""A time step of a scheme and what it makes of a harmonic motion.
 
 With M A + C V + K D = F e^{iwt} taken at the steps, z = e^{iw dt} and gg times V at the start of each step,
 
@@ -199,7 +199,7 @@ class Stepping:
         """The numbers in words."""
         return f"dt = {self.step:.6g} s, {self.name}, gg = {self.gg:.9g}"
 
-    # ---- vibration at a given frequency --------------------------------------------------------------------------
+    # ---- vibration at a given frequency ----
 
     def squared_frequency(self, omega: ArrayLike) -> Complex:
         """Return W2 [1/s^2] at angular frequencies w [rad/s]: A = -W2 D.
@@ -252,7 +252,7 @@ class Stepping:
             )
         return numbers
 
-    # ---- free vibration ------------------------------------------------------------------------------------------
+    # ---- free vibration ----
 
     def roots(self, omega_dt: float) -> Complex:
         """Return the factors z of a free motion over a step at W = w dt, the principal pair first.

@@ -140,7 +140,7 @@ def how_it_ended(scene: str, solver: str, outcome: Outcome, notes: Sequence[str]
     return printable(f"{scene} {solver}: {outcome}: {outcome.sentence} {'; '.join(notes)}")
 
 
-# ---- the summary --------------------------------------------------------------------------------------------------
+# ---- the summary ----
 
 
 def summary(answer: RunAnswer, width: int) -> Iterator[StyledLine]:
@@ -241,7 +241,7 @@ def next_commands(answer: RunAnswer) -> list[str]:
     return [report] if answer.user_scenes else [report, "the same command with --verbose lists every gate"]
 
 
-# ---- for machines --------------------------------------------------------------------------------------------------
+# ---- for machines ----
 
 
 def as_data(answer: RunAnswer) -> dict[str, Any]:
