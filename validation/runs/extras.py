@@ -57,19 +57,6 @@ def sentence(*libraries: str) -> str:
 
 
 def require(subject: str, *libraries: str) -> None:
-    """Refuse what needs libraries of an extra that is not installed.
-
-    Parameters
-    ----------
-    subject
-        The option, page or function that needs them.
-    libraries
-        Names of their imports.
-
-    Raises
-    ------
-    InputError
-        One of them is absent: which, and how to install it.
-    """
+    """Raise InputError, with the command to install it, where an option, page or function lacks a library."""
     if reason := missing(*libraries):
         raise InputError(reason, field=subject)

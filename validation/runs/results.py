@@ -164,7 +164,7 @@ class Results:
         return sorted(path.stem for path in self.directory.glob("studies/*.json"))
 
     def manifest(self, study: str) -> Manifest:
-        """Return a study's manifest: title, cases (scene, solver, key, definition) and comparisons.
+        """Return a study's manifest.
 
         Raises
         ------
@@ -207,13 +207,7 @@ class Results:
         return manifest
 
     def check(self) -> None:
-        """Read what a run will add to, so that what cannot be read is told before anything runs.
-
-        Raises
-        ------
-        InputError
-            Rows or verdicts cannot be read.
-        """
+        """Raise InputError where rows or verdicts, which a run will add to, cannot be read, before anything runs."""
         if self.directory.is_file():  # what is in it is not said to be damaged, nor to be deleted
             raise InputError("must be a directory", field="--results", value=f"the file {str(self.directory)!r}")
         self.rows()

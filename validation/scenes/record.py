@@ -19,18 +19,10 @@ HEADERS = ("time,x", "time,y", "time,x,y", "time,y,x")
 
 @dataclass(frozen=True)
 class Record:
-    """Displacement of the base, to be read linearly between its instants and held beyond them.
+    """Displacement of the base, to be read linearly between its instants and held beyond them; shapes (count,)."""
 
-    Attributes
-    ----------
-    time
-        Increasing instants [s], shape (count,).
-    x, y
-        Displacement at the instants [m], shape (count,).
-    """
-
-    time: Array
-    x: Array
+    time: Array  # increasing instants [s]
+    x: Array  # displacement at the instants [m]
     y: Array
 
 

@@ -1,7 +1,7 @@
 """Scenes: what is simulated, as TOML in SI units, checked with pydantic; unknown keys are refused.
 
-A scene holds problem data only; no solver is imported here. Every defect of a scene file is reported as one
-:class:`InputError` line that names the file, the field, the rule and the value.
+Every defect of a scene file is reported as one :class:`InputError` line that names the file, the field, the rule and
+the value.
 """
 
 from __future__ import annotations
@@ -332,12 +332,7 @@ def scene_names() -> list[str]:
 
 
 def load_scene(source: str | Path) -> Scene:
-    """Return the scene of a TOML file or of a built-in name.
-
-    Parameters
-    ----------
-    source
-        Path of a scene file, or a name that `scene_names` lists.
+    """Return the scene of a TOML file, or of a name that `scene_names` lists.
 
     Raises
     ------

@@ -31,31 +31,15 @@ WORDS = tuple(str(status) for status in (Status.PASS, Status.FAIL, Status.NOT_RU
 
 @dataclass(frozen=True)
 class RunAnswer:
-    """Studies as one command ran them, and what is to be said of them.
-
-    Attributes
-    ----------
-    runs, seconds
-        The studies with verdicts and outcomes, and the seconds that each took now.
-    results
-        Where finished cases, verdicts and alarms are kept.
-    messages
-        Sentences on what was not measured.
-    changes
-        What differs from the baseline; None without one.
-    user_scenes
-        Names of the runs that are a user's scenes or built-in ones, not studies of the suite.
-    status
-        Exit status.
-    """
+    """Studies as one command ran them, and what is to be said of them."""
 
     runs: Sequence[JudgedStudy]
-    seconds: Sequence[float]
-    results: Results
-    messages: Sequence[str]
-    changes: Sequence[Change] | None
-    user_scenes: frozenset[str]
-    status: int
+    seconds: Sequence[float]  # that each took now
+    results: Results  # with finished cases, verdicts and alarms
+    messages: Sequence[str]  # sentences on what was not measured
+    changes: Sequence[Change] | None  # since the baseline; None without one
+    user_scenes: frozenset[str]  # names of the runs that are scenes, a user's or built-in, not studies of the suite
+    status: int  # exit status
 
     @property
     def names(self) -> list[str]:
