@@ -1,8 +1,8 @@
 """The adviser across schemes: which of them, at which step, has a damping ratio at a frequency, and at what price.
 
 Damping ratios are those of the roots of a step (`theory.stepping`), rebounds those of a rigid mass on a spring
-(`theory.rebound`). Of each scheme the step is taken at which xi first reaches the target, from small steps on; the
-families of one parameter are asked at the present step too.
+(`theory.rebound`). The step of a scheme is the smallest at which xi reaches the target; the families of one parameter
+are asked at the present step too.
 """
 
 from __future__ import annotations

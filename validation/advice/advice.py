@@ -313,7 +313,6 @@ def _sentence(scene: Scene, answer: Advice) -> str:
         last, contact = flips[-1]
         at = "" if len(flips) == len(solutions) else f" at {_answer(last)}"
         text += f", but the contact mode {runs(contact)}{at}"
-    # which settings are fixed, where it matters
     first = solutions[0]
     if "time.gg" in first.settings:
         text += say("valid gg", first, left=left_of_a_distance(first.value, first.step))

@@ -1,9 +1,4 @@
-"""The alarms of a block.
-
-hidden tension
-    A locked contact carries tension; a real one would open.
-contact ringing
-    A root of the contact mode lies next to -1: it flips sign every step and hardly decays.
+"""The alarms of a block: tension of a locked contact, and a contact mode that rings.
 
 That of a start that puts energy in is in `validation.advice.overshoot`, those of contact that opens in
 `.contact_alarms`, those of friction in `.friction`.

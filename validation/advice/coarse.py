@@ -1,14 +1,8 @@
 """Alarms of a step that is too long for the motion, from the scheme's roots alone: no solver is run for them.
 
-agreement by damping
-    The scheme takes a third of the first mode, or of the wave that drives a column, within one period. Programs that
-    take the same steps agree because both are damped alike.
-fewer than two steps per period
-    The first mode turns by more than pi in a step: no history shows it, whatever the scheme.
-
-What the discount and damping tables take is meant, and counts for neither; where they take as much in a period,
-the motion is to come to rest, and there is nothing to warn of. A block that slides or turns as a whole is left to the
-alarms of friction and landings.
+Programs that take the same steps agree because both are damped alike. What the discount and damping tables take is
+meant, and counts for nothing; where they take as much in a period, the motion is to come to rest, and there is nothing
+to warn of. A block that slides or turns as a whole is left to the alarms of friction and landings.
 """
 
 from __future__ import annotations

@@ -1,21 +1,4 @@
-"""Alarms of contact that opens.
-
-step too large for contact
-    The step changes the restitution of a landing by more than a tenth; arbitrary where it is the phase that decides.
-energy gained by switching
-    Opening and closing have put energy into the block; under a scheme that remembers its acceleration, all that the
-    scheme did.
-energy may be gained
-    delta < 1 or 2 alpha < delta, with w_c dt > 1: nothing keeps opening and closing from putting energy in.
-hidden opening
-    The step is too long to see that the block leaves its springs.
-peak force of the penalty
-    The peak of the contact force is that of the springs, which grows as sqrt(p), not that of the body.
-drag in flight
-    gg < 1 brakes the block in the air as well.
-tension of a dead band
-    The band lets a contact that carries no tension pull with more than 1 % of the load.
-"""
+"""Alarms of contact that opens."""
 
 from __future__ import annotations
 

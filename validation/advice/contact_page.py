@@ -62,8 +62,6 @@ def elements() -> str:
 def scenes(scene: Scene, bound: ColumnLimits | None = None) -> dict[str, Scene]:
     """Return the scene that each solver runs: the exact motions have no kinetic damping.
 
-    `bound` is what is known of a column whose contacts open or slip.
-
     Raises
     ------
     InputError

@@ -149,10 +149,9 @@ class Trials:
 
 
 def yielding(scene: Scene, stiffness: float) -> float:
-    """Return what springs p give way by, over what the block shortens down to its centroid: E a / (p h) [-].
+    """Return F / (2 p), what springs p give way by, over F h / (2 E a), what the block shortens to its centroid [-].
 
-    Under a force F the springs give way by F / (2 p), and the block of one strain by F h / (2 E a) at its centroid. Of
-    a share it returns the p [N/m].
+    Of a share it returns the p [N/m].
     """
     modulus, _ = statics.moduli(scene)
     return modulus * scene.block.base_length / (statics.height(scene) * stiffness)
@@ -160,13 +159,7 @@ def yielding(scene: Scene, stiffness: float) -> float:
 
 @dataclass(frozen=True)
 class Question:
-    """What is asked of a scene.
-
-    Raises
-    ------
-    InputError
-        A goal, an error or a frequency is none, by the options of the command line.
-    """
+    """What is asked of a scene; raises InputError by the options of the command line for what is none."""
 
     source: str = ""  # the words of the scene on a command line
     error: float = ERROR  # of displacement and contact force, that is allowed [-]
@@ -446,7 +439,7 @@ def recommendation(
 def estimated_seconds(scene: Scene, solver: str, steps: int) -> float | None:
     """Return about how long some steps of a solver take, with their set-up [s]; None where it does not apply.
 
-    Many steps are not run: two short runs are timed, of which the longer has four times the steps of the shorter.
+    Many steps are estimated from two short runs, of which the longer has four times the steps of the shorter.
     """
     if get_solver(solver).refusal(scene):
         return None

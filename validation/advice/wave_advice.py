@@ -282,7 +282,6 @@ def _sentence(scene: Scene, advice: WaveAdvice) -> str:
 
 
 def _advised(scene: Scene, advice: WaveAdvice, largest: _LargestStep) -> str:
-    """Say what is advised and what limits it, or why nothing is."""
     if advice.advised is not None:
         heights = ", ".join(f"{h:.4g}" for h in advice.advised.heights)
         return say("advised wave", advice, heights=heights, late=_late(advice.advised))

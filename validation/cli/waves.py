@@ -45,7 +45,6 @@ def response(
     from validation.runs.files import check_ending
 
     case = one_case(scene, assignments)
-    # the frequencies of a sweep [Hz]
     import numpy as np
 
     from validation.errors import InputError

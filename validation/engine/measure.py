@@ -244,7 +244,6 @@ def _narrowed(solver: Solver, scene: Scene) -> tuple[Scene, list[str]]:
 
 def _measure(prepared: Prepared, solver: Solver, case: Case, run: Run, failed: list[str]) -> dict[str, Value]:
     """Metrics of the run itself; of its history none where that is not sound. What fails beside it is noted."""
-    # the parts of the study's measures that this run has
     measures = set(case.measures)
     if run.history is None or run.outcome is not Outcome.COMPLETED:
         measures -= {"history", "modes", "energy"}

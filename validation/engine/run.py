@@ -91,10 +91,6 @@ def run_study(
         Ranks of the solvers that can be distributed.
     jobs
         Worker processes; ignored where an executor is given.
-    executor
-        Any executor of the standard library's interface.
-    progress
-        Called with (done, total, label) after each case.
     """
     group = study_cases(study, full, ranks)
     (ended,) = run_cases([group], results, jobs=jobs, executor=executor, progress=progress)

@@ -96,7 +96,6 @@ def read_sets(
     each table how many are read. `own` are the problems that are answered, by the names of their tables; those of the
     pack by default.
 
-
     Raises
     ------
     DefectsError
@@ -275,12 +274,7 @@ def _check_once(sets: Sequence[AnswerSet], defects: Defects) -> None:
 def read_tables(place: Path, problems: Sequence[Problem], header: HeaderNames = AS_NAMED) -> AnswerSet:
     """Return the answers of a table, or of a directory with a table ``PROBLEM.csv`` each, of which nothing is stated.
 
-    `header` says what the tables call their columns.
-
-    Raises
-    ------
-    DefectsError
-        Something is wrong; every defect of all files is named.
+    `header` says what the tables call their columns. Defects are raised as by `read_sets`.
     """
     if not place.is_dir() and len(problems) != 1:
         rule = "must name the one problem or scene that a table answers"

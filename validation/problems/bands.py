@@ -121,13 +121,7 @@ def changed_scenes(scene: Scene) -> dict[str, Scene]:
 
 
 def standard(problem: Problem) -> Standard:
-    """Return what answers to a problem are held against; computed once a scene.
-
-    Raises
-    ------
-    InputError
-        An exact motion could not be computed.
-    """
+    """Return what answers to a problem are held against, computed once a scene; InputError without an exact motion."""
     return _standard(definition_of(problem.scene))
 
 

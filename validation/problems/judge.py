@@ -96,7 +96,6 @@ def judge(problem: Problem, history: History, against: Standard | None = None) -
 
     What it is held against is computed, once a problem, where it is not at hand.
 
-
     Raises
     ------
     InputError

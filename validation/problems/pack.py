@@ -99,10 +99,7 @@ def check_place(directory: Path) -> None:
 def write_pack(place: Path, progress: Progress = lambda number, total, label: None) -> int:
     """Write the problems into the directory of a pack, which is made, and return how many there are.
 
-    Raises
-    ------
-    InputError
-        The directory cannot be made or written.
+    Raises InputError where the directory cannot be made or written.
     """
     rows = []
     numbers: list[Sequence[str]] = [NUMBERS]

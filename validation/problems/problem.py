@@ -85,10 +85,7 @@ class ProblemHooks(Hooks):
     def judged_numbers(self, scene: Scene) -> tuple[JudgedNumber, ...]:
         """Return the numbers that answers to a scene are judged by; none where the exact motion judges.
 
-        Raises
-        ------
-        InputError
-            Nothing is known of the scene that could be measured.
+        Raises InputError where nothing is known of the scene that could be measured.
         """
         return ()
 
@@ -143,13 +140,7 @@ def names() -> tuple[str, ...]:
 
 @functools.cache
 def problem(name: str) -> Problem:
-    """Return a problem of the pack by name.
-
-    Raises
-    ------
-    KeyError
-        There is none of this name.
-    """
+    """Return a problem of the pack by name, or raise KeyError."""
     return _makers()[name]()
 
 

@@ -1,7 +1,6 @@
 """Libraries that extras of the distribution bring, and the sentence where one is absent.
 
-A plain install judges and compares histories; pages, exact motions of contact and mesh files each have an extra. What
-imports one of these libraries names it here first, so that its absence is a sentence before anything is computed.
+What imports one of these libraries names it here first, so that its absence is a sentence before anything is computed.
 """
 
 from __future__ import annotations

@@ -58,10 +58,7 @@ def read_record(path: Path) -> Record:
 def direction(record: Record) -> tuple[float, float]:
     """Return the unit vector of the straight line that the base moves along, towards +x, or +y where it is steeper.
 
-    Raises
-    ------
-    InputError
-        The base does not move, or along no straight line.
+    Raises InputError where the base does not move along a straight line.
     """
     _, sizes, lines = np.linalg.svd(np.column_stack([record.x, record.y]), full_matrices=False)
     if sizes[0] == 0:

@@ -165,7 +165,6 @@ class Scene(SceneTables):
 
 
 def _stated(table: Section) -> dict[str, Any]:
-    """Return what a table states as plain data."""
     data: dict[str, Any] = json.loads(table.model_dump_json(exclude_unset=True, by_alias=True))
     return data
 
@@ -254,13 +253,7 @@ _EXCLUSIVE = {
 
 
 def parse_scene(data: dict[str, Any], source: str) -> Scene:
-    """Check plain data and return the scene.
-
-    Raises
-    ------
-    InputError
-        With one line: source, field, rule and value of the first defect.
-    """
+    """Return the scene of plain data, or raise InputError: source, field, rule and value of the first defect."""
     try:
         # A file must not state the scene's name, which is that of the file; plain data have it.
         refuse_unknown_keys({key: value for key, value in data.items() if key != "name"}, _all_tables(), source)
@@ -450,10 +443,7 @@ def _plain_data(path: Path, text: bytes) -> dict[str, Any]:
 def parse_assignment(text: str) -> tuple[str, Any]:
     """Split ``key=value`` of the command line; the value is TOML, or else a plain word.
 
-    Raises
-    ------
-    InputError
-        There is no ``=`` or no key.
+    Raises InputError where there is no ``=`` or no key.
     """
     key, equals, value = text.partition("=")
     if not equals or not key.strip():

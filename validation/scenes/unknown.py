@@ -12,7 +12,6 @@ from validation.runs.beside import table_beside
 from validation.scenes.keys import Section, key_of_any_entry, keys_of
 from validation.scenes.kinds import kinds
 
-# what other programs, and the symbols of the text, call a key
 OTHER_NAMES: dict[str, list[str]] = table_beside(__file__, "other_names.toml")
 SHORTEST = 3  # letters of a name that another may be spelt like
 CLOSE = 0.6  # similarity of two names from which on one may be meant for the other

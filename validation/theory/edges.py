@@ -9,8 +9,7 @@ from collections.abc import Callable
 def edge(holds: Callable[[float], bool], inside: float, outside: float, tolerance: float) -> float:
     """Return the last positive value at which something holds, by halving the ratio of two that enclose it.
 
-    It holds `inside` and not `outside`, whichever is larger. The inner end is returned as soon as the relative
-    distance of both is within `tolerance`.
+    It holds `inside` and not `outside`, whichever is larger; the inner end is returned to a relative `tolerance`.
     """
     while abs(outside / inside - 1) > tolerance:
         middle = math.sqrt(inside * outside)

@@ -55,13 +55,7 @@ STRAIN = np.array([0.0, 1.0])  # diagonal of the stiffness without springs
 
 
 def stiffness_ratio(scene: Scene, stiffness: float | None = None) -> float:
-    """Return k = 2 p h / (E' a), the stiffness of the springs over that of the block [-].
-
-    Raises
-    ------
-    FloatingPointError
-        It is below the smallest number of double precision.
-    """
+    """Return k = 2 p h / (E' a) [-], or raise FloatingPointError where it is below the range of double precision."""
     modulus, _ = statics.moduli(scene)
     p = scene.contact.stiffness if stiffness is None else stiffness
     ratio = 2 * p * statics.height(scene) / (modulus * scene.block.base_length)

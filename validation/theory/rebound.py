@@ -105,10 +105,7 @@ def pressing_force(omega: float | Array, zeta: float, x: Array, v: Array, C: flo
 def conserving_steps(omega: float | Array) -> Advance:
     """Return the step of energy-conserving contact (Armero and Petocz 1998), N = -(U1 - U0)/(x1 - x0).
 
-    Raises
-    ------
-    ValueError
-        If omega is infinite: a rigid stop stores no energy.
+    Raises ValueError for infinite omega: a rigid stop stores no energy.
     """
     if np.any(np.isinf(omega)):
         raise ValueError("omega: must be finite with energy-conserving contact, got inf")

@@ -202,13 +202,7 @@ class Stepping:
     # ---- vibration at a given frequency ----
 
     def squared_frequency(self, omega: ArrayLike) -> Complex:
-        """Return W2 [1/s^2] at angular frequencies w [rad/s]: A = -W2 D.
-
-        Raises
-        ------
-        InputError
-            The scheme is composite, which has none.
-        """
+        """Return W2 [1/s^2] at angular frequencies w [rad/s], A = -W2 D; InputError of composite schemes."""
         half = 0.5 * self.step * np.asarray(omega, float)
         turn = 2j * np.sin(half) * np.exp(1j * half)  # z - 1 without subtraction
         above = turn * ((1 - self.gg) + turn)  # (z - 1)(z - gg)
@@ -222,12 +216,7 @@ class Stepping:
     def velocity_factor(self, omega: ArrayLike) -> Complex:
         """Return S [1/s] of V = S D, which is i w in exact time: -W2 dt ((1 - gamma) + gamma z) / (z - gg).
 
-        Of the leapfrog V is the mean of the half steps beside it.
-
-        Raises
-        ------
-        InputError
-            The scheme is composite, which has none.
+        Of the leapfrog V is the mean of the half steps beside it. Raises InputError of composite schemes.
         """
         half = 0.5 * self.step * np.asarray(omega, float)
         turn = 2j * np.sin(half) * np.exp(1j * half)

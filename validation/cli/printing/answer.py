@@ -152,7 +152,7 @@ def _tail(answer: RunAnswer, width: int) -> Iterator[StyledLine]:
     if len(reasons) > 2:
         yield f"NOT RUN for {len(reasons) - 2} more reasons; --verbose shows every one", "NOT RUN"
     yield from _ended(answer, width)
-    # The kinds of alarm with the number of cases, and for own scenes the first sentence of each kind.
+    # for own scenes the first sentence of each kind of alarm, too
     kinds = alarm_kinds(answer)
     if kinds:
         words = ", ".join(f"{kind} in {n} case{'s' * (n > 1)}" for kind, n in kinds.items())
