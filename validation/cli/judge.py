@@ -301,17 +301,11 @@ def all_defects() -> Iterator[None]:
         raise typer.Exit(BAD_INPUT) from None
 
 
-# ---- gates ----------------------------------------------------------------------------------------------------------
+# ---- gates ----
 
 
 def check_loads(source: str) -> None:
-    """Refuse a solver that cannot be loaded, before anything is run with it.
-
-    Raises
-    ------
-    InputError
-        There is no such solver, or its module raises.
-    """
+    """Raise InputError for a solver that cannot be loaded, before anything is run with it."""
     from validation.solvers.registry import get_solver
     from validation.solvers.user import UserSolver
 

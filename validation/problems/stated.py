@@ -29,13 +29,7 @@ RULES = {  # in the place of what pydantic says of a pattern or of each of sever
 
 
 class Document:
-    """A JSON text, and where in it each key and each value stands.
-
-    Raises
-    ------
-    InputError
-        It is no JSON, or no object.
-    """
+    """A JSON text, and where in it each key and each value stands; InputError where it holds no object."""
 
     def __init__(self, path: Path, text: str) -> None:
         self.path = path
@@ -103,13 +97,7 @@ class Document:
 
 
 def read_document(path: Path, advice: str) -> Document:
-    """Return a JSON file that holds an object.
-
-    Raises
-    ------
-    InputError
-        It cannot be read, or is no such file.
-    """
+    """Return a JSON file that holds an object, or raise InputError."""
     try:
         return Document(path, read_text(path, LARGEST_FILE))
     except FileNotFoundError:
@@ -136,7 +124,6 @@ def checked(document: Document, model: type[Stated], template: Mapping[str, Any]
 
 
 def _add(document: Document, model: type[Data], error: dict[str, Any], defects: Defects) -> None:
-    """Add one defect of a report of pydantic."""
     address = document.known(tuple(error["loc"]))
     rule, value = rule_and_value(error)
     advice = None
