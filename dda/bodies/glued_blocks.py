@@ -51,7 +51,7 @@ def glued_blocks(
     stress: tuple[float, float, float] = (0.0, 0.0, 0.0),
     gravity: tuple[float, float] = (0.0, 0.0),
 ) -> BlockSystem:
-    """Return blocks glued along all edges they share, under loads on their outline.
+    """Blocks glued along all edges they share, under loads on their outline.
 
     Parameters
     ----------
@@ -61,8 +61,6 @@ def glued_blocks(
         Lines on which edges are glued to what is fixed.
     clamp_glue : float, optional
         Stiffness of the springs there, without it that of the glue [N/m].
-    tractions : sequence of Traction
-        Loads on parts of the outline.
     stress : tuple of float
         s_xx, s_yy, s_xy, whose tractions s n act on all of the outline that is not clamped [Pa].
     gravity : tuple of float
@@ -123,7 +121,7 @@ def _outline(blocks: Sequence[Block], joints: Sequence[Joint]) -> Iterator[Piece
 
 
 def _on_line(outline: Sequence[Piece], start: Point, end: Point, what: str) -> list[Piece]:
-    """Return what lies of the outline between two points of a line.
+    """What lies of the outline between two points of a line.
 
     Raises
     ------
@@ -141,13 +139,7 @@ def _on_line(outline: Sequence[Piece], start: Point, end: Point, what: str) -> l
 
 
 class GluedBlocks:
-    """What glued blocks answer: at rest, by modes, step by step.
-
-    Parameters
-    ----------
-    system : BlockSystem
-        As `glued_blocks` returns it.
-    """
+    """What blocks that `glued_blocks` returns answer: at rest, by modes, step by step."""
 
     def __init__(self, system: BlockSystem) -> None:
         self.system = system
@@ -178,7 +170,7 @@ class GluedBlocks:
         return self.rest[:, 3:]
 
     def observer(self, start: Point, end: Point) -> Array:
-        """Return the rows of the mean displacement in x and y of a part of the outline, or of a point, (2, 6 blocks).
+        """The rows of the mean displacement in x and y of a part of the outline, or of a point, (2, 6 blocks).
 
         A block of one strain moves its edges linearly: the mean is that of the middle.
 
@@ -199,7 +191,7 @@ class GluedBlocks:
         return rows.reshape(2, -1)
 
     def modes(self, scheme: Scheme, count: int) -> tuple[Mode, ...]:
-        """Return the lowest modes that are no rigid motion, in rising order, their shares of the static response."""
+        """The lowest modes that are no rigid motion, in rising order, their shares of the static response."""
         equations = self.statics
         squares, shapes, _ = equations.lowest(count)
         z, _ = equations.at_rest(equations.F, np.zeros(len(equations.pressure)))
@@ -207,7 +199,7 @@ class GluedBlocks:
         return modes_of(scheme, np.sqrt(squares), shares, 0 * shares)
 
     def history(self, scheme: Scheme, steps: int, rows: Array) -> Result:
-        """Return what some rows observe of the blocks from rest, at each step.
+        """What some rows observe of the blocks from rest, at each step.
 
         Parameters
         ----------
@@ -223,7 +215,7 @@ class GluedBlocks:
 
 
 def _without_rigid_motion(system: BlockSystem) -> Equations:
-    """Return a free system's equations with the condition R' M D = 0."""
+    """A free system's equations with the condition R' M D = 0."""
     from scipy.sparse import block_diag, csr_array, vstack
 
     equations = system.equations

@@ -156,7 +156,7 @@ class StageSolver:
 
 
 def shortened(stage: Stage, gg: float, ratio: float) -> Stage:
-    """Return the numbers of a stage of a shorter step, for a state in units of the whole one."""
+    """The numbers of a stage of a shorter step, for a state in units of the whole one."""
     by_velocity = {name: ratio * getattr(stage, name) for name in ("d_u", "d_g", "g_0", "g_g", "delta")}
     by_acceleration = {name: ratio * ratio * getattr(stage, name) for name in ("e_0", "e_g", "alpha")}
     return stage._replace(gg=gg**ratio, **by_velocity, **by_acceleration)
@@ -172,20 +172,14 @@ def glued_march(
     energies: bool,
     steps: int,
 ) -> March:
-    """Return the march of glued blocks.
+    """The march of so many steps of glued blocks under loads of a size, whose energies are kept too if asked for.
 
     Parameters
     ----------
-    size
-        Of the loads.
     contact : (m, unknowns) array
         Rows of contact, each of one block with all its unknowns.
     observed : (c, n) and (c, gaps) arrays
         What is kept of every step, by the modes and by the forces of the glue.
-    energies
-        Whether the energies of every step are kept, too.
-    steps
-        How many will be march.
     """
     rows = contact @ equations.shapes
     m = len(rows)
@@ -232,7 +226,7 @@ def glued_march(
 
 
 def start_state(glue: Glue, opening: Array, velocity: Array, moved: Array) -> GluedState:
-    """Return the state at t = 0: unstrained, without contact force.
+    """The state at t = 0: unstrained, without contact force.
 
     Parameters
     ----------
@@ -353,7 +347,7 @@ def add_bulk_loss(march: March, state: GluedState, after: GluedState, part: Part
 
 
 def strain_energy(glue: Glue, z: Array, force: Array) -> float:
-    """Return that of blocks and glue, z' k z / 2 + mu' C mu / 2 [J]."""
+    """That of blocks and glue, z' k z / 2 + mu' C mu / 2 [J]."""
     return float(z @ (glue.k * z) + force @ (glue.C @ force)) / 2 / glue.scheme.step**2
 
 

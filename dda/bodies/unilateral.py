@@ -158,7 +158,6 @@ class UnilateralOptions:
     rotation: str = EXACT  # or "first-order": the outline of a step moves by x - r y, y + r x, and grows
 
     def __post_init__(self) -> None:
-        """Check the ranges."""
         for field, known in (("rule", RULES), ("rotation", (EXACT, FIRST_ORDER))):
             if getattr(self, field) not in known:
                 raise ValueError(f"{field}: must be among {', '.join(known)}, got {getattr(self, field)!r}")
@@ -214,8 +213,6 @@ def solve_unilateral(
     model, scheme
         What moves, a `UnilateralModel`, an `OpeningSystem` or a `RollingModel`, and how it is stepped. The start
         "consistent" means M A0 = F, since no contact presses at t = 0.
-    steps : int
-        Number of steps.
     columns : sequence of str
         Any of `dda.COLUMNS`.
     options
@@ -235,7 +232,7 @@ def solve_unilateral(
 
 
 def column(model: UnilateralModel, block: OpeningBlock, history: History, name: str, step: float) -> Array:
-    """Return a column of every step."""
+    """A column of every step."""
     if name == "contact_pressure":
         return np.asarray(history.force[1:, : block.contacts].sum(axis=1) / model.base_length + 0.0)
     row = block.observers[name]
@@ -250,7 +247,7 @@ def energies(
     history: History,
     rule: str,
 ) -> Columns:
-    """Return the energies [J] after every step, the losses summed from t = 0 on.
+    """The energies [J] after every step, the losses summed from t = 0 on.
 
     They are those of `dda.march.energy`, with "dashpot" or "impact" where contact has one. Energy-conserving contact
     does the work U0 - U1 itself and loses nothing.
@@ -320,5 +317,5 @@ def requirements(model: Any, scheme: Scheme, options: UnilateralOptions) -> Iter
 
 
 def frictionless(law: Unilateral, options: UnilateralOptions) -> bool:
-    """Tell whether contact has no forces along the base, whatever its law has."""
+    """Whether contact has no forces along the base, whatever its law has."""
     return bool(law.damping) or options.rule in LOOPS

@@ -64,7 +64,7 @@ class Elimination:
 
 
 def largest_frequency(stiffness: csr_array | LinearOperator) -> float:
-    """Return the largest w of K phi = w^2 phi [rad/s], zero where nothing moves.
+    """The largest w of K phi = w^2 phi [rad/s], zero where nothing moves.
 
     Raises
     ------

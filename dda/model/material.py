@@ -32,7 +32,6 @@ class Material:
     hypothesis: Hypothesis = "plane stress"  # or "plane strain"
 
     def __post_init__(self) -> None:
-        """Check the ranges."""
         check_positive(density=self.density, young=self.young)
         if self.hypothesis not in ("plane stress", "plane strain"):
             raise ValueError(f'hypothesis: must be "plane stress" or "plane strain", got {self.hypothesis!r}')
@@ -73,7 +72,7 @@ class Material:
         return mu if self.hypothesis == "plane stress" else mu / (1 - mu)
 
     def elasticity(self) -> NDArray[np.float64]:
-        """Return the 3 x 3 matrix of stress over strain (sx, sy, txy) = C (ex, ey, gxy) [Pa].
+        """The 3 x 3 matrix of stress over strain (sx, sy, txy) = C (ex, ey, gxy) [Pa].
 
         Eq. (21) with its missing factor E / (1 - mu^2).
         """

@@ -29,7 +29,7 @@ class PlaneContact(NamedTuple):
 def unsettled_contacts(
     model: PlaneModel, march: March, history: History, reached: int, outcome: int
 ) -> tuple[PlaneContact, ...]:
-    """Return the contacts that ended a history.
+    """The contacts that ended a history.
 
     Parameters
     ----------
@@ -37,8 +37,6 @@ def unsettled_contacts(
         As the step that failed left it.
     history
         The cuts of that step.
-    reached, outcome
-        What the loop over steps returned.
     """
     found = march.method.detection.contacts
     if outcome == TOO_DEEP:
@@ -52,13 +50,13 @@ def unsettled_contacts(
 
 
 def stated_contacts(model: PlaneModel) -> list[PlaneContact]:
-    """Return the contacts that are stated, then both ends of every bond."""
+    """The contacts that are stated, then both ends of every bond."""
     stated = [PlaneContact(part.block, part.corner, part.on, part.edge) for part in model.contacts]
     return stated + [PlaneContact(bond.first, -1, bond.second, -1) for bond in model.bonds for _ in range(2)]
 
 
 def found_contact(march: March, corner: int, edge: int) -> PlaneContact:
-    """Return a contact that was found, by numbers among all corners, with those of its blocks."""
+    """A contact that was found, by numbers among all corners, with those of its blocks."""
     corners = march.method.detection.corners
     block = int(corners.block[corner])
     on = int(corners.block[edge])
@@ -66,7 +64,7 @@ def found_contact(march: March, corner: int, edge: int) -> PlaneContact:
 
 
 def flipping_contacts(march: March, is_cut: bool) -> list[int]:
-    """Return the contacts whose states change as the search of the stage that failed goes round, by their numbers.
+    """The contacts whose states change as the search of the stage that failed goes round, by their numbers.
 
     The search goes on from the states in which it was given up until it comes back to states that it had: those in
     between are gone through for ever.
@@ -104,7 +102,7 @@ def flipping_contacts(march: March, is_cut: bool) -> list[int]:
 
 
 def sentence(model: PlaneModel, reached: int, outcome: int, contacts: Sequence[PlaneContact]) -> str:
-    """Return how a history ended, in words: of one that ends early at which step and by which contacts."""
+    """How a history ended, in words: of one that ends early at which step and by which contacts."""
     if outcome == FOUND:
         return OUTCOMES[outcome]
     names = [contact_name(model, contact) for contact in contacts[:NAMED]]
@@ -114,7 +112,7 @@ def sentence(model: PlaneModel, reached: int, outcome: int, contacts: Sequence[P
 
 
 def contact_name(model: PlaneModel, contact: PlaneContact) -> str:
-    """Return a contact by the names of its blocks."""
+    """A contact by the names of its blocks."""
     block = model.name_of(contact.block)
     on = model.name_of(contact.on)
     if contact.corner < 0:

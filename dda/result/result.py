@@ -54,7 +54,7 @@ def linear_result(
     notes: tuple[str, ...] = (),
     **work: Any,
 ) -> Result:
-    """Return the result of steps of which none may fail; a column is infinite from its first overflow on.
+    """The result of steps of which none may fail; a column is infinite from its first overflow on.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def linear_result(
 
 
 def times_of(scheme: Scheme, steps: int, began: float, ready: float) -> dict[str, Any]:
-    """Return the times of a result: of its steps, and what set-up and steps took, the last ones ending now [s]."""
+    """The times of a result: of its steps, and what set-up and steps took, the last ones ending now [s]."""
     return {
         "time": step_times(scheme, steps),
         "setup_seconds": ready - began,
@@ -85,7 +85,7 @@ def times_of(scheme: Scheme, steps: int, began: float, ready: float) -> dict[str
 
 
 def step_times(scheme: Scheme, steps: int) -> Array:
-    """Return the times of step 1 to the last [s]."""
+    """The times of step 1 to the last [s]."""
     times = np.arange(1.0, steps + 1)
     times *= scheme.step
     return times

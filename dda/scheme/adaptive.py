@@ -43,8 +43,6 @@ def adapted_modes(scheme: Scheme, frequencies: Array, load: Array, steps: int, f
         Its own discount is 1.
     frequencies, load : (n,) array
         w [rad/s] and load of the mass-normalised modes.
-    floor : float
-        Least discount [-].
     """
     dt = scheme.step
     k = (dt * frequencies) ** 2

@@ -37,7 +37,7 @@ Map = tuple[int, int, int, int, int, int]
 
 
 def why_stepped(scheme: Scheme, frequencies: Array) -> str | None:
-    """Return why a history must be stepped, in words; None if it can be blocked.
+    """Why a history must be stepped, in words; None if it can be blocked.
 
     A power of a growing map overflows before the history does.
     """
@@ -50,7 +50,7 @@ def why_stepped(scheme: Scheme, frequencies: Array) -> str | None:
 
 
 def _grows(scheme: Scheme, omega: float) -> bool:
-    """Tell whether the step of a mode has a root outside the unit circle, or on it at -1."""
+    """Whether the step of a mode has a root outside the unit circle, or on it at -1."""
     if scheme.damped:
         _, slope, product = polynomial(scheme, omega).tolist()
         return not (4 - 2 * slope + product > 0 and product - slope <= GROWTH_ROUNDING)
@@ -69,7 +69,7 @@ def _grows(scheme: Scheme, omega: float) -> bool:
 
 
 def blocked_modes(scheme: Scheme, frequencies: Array, rows: Array, steps: int) -> Array:
-    """Return the observed columns of every step from rest, (columns, steps).
+    """The observed columns of every step from rest, (columns, steps).
 
     Parameters
     ----------
@@ -77,8 +77,6 @@ def blocked_modes(scheme: Scheme, frequencies: Array, rows: Array, steps: int) -
         w of every mode [rad/s].
     rows : (columns, n) array
         What a mode adds to a column at its static displacement.
-    steps : int
-        Number of steps.
     """
     levels = (steps - 1).bit_length()
     split = min(BLOCK.bit_length() - 1, (levels + 1) // 2)
@@ -94,7 +92,7 @@ def blocked_modes(scheme: Scheme, frequencies: Array, rows: Array, steps: int) -
 
 
 def doubled(start: Array, maps: Array) -> Array:
-    """Return the rows and, below them, their products with all maps made of those of 1, 2, 4, ... steps."""
+    """The rows and, below them, their products with all maps made of those of 1, 2, 4, ... steps."""
     have = len(start)
     rows = np.empty((have << len(maps), start.shape[1]))
     rows[:have] = start
@@ -105,7 +103,7 @@ def doubled(start: Array, maps: Array) -> Array:
 
 
 def _powers(scheme: Scheme, frequencies: Array, levels: int) -> ArrayPair:
-    """Return the maps of 1, 2, 4, ... steps of all modes together, and the state at step 1.
+    """The maps of 1, 2, 4, ... steps of all modes together, and the state at step 1.
 
     The state holds u and the scaled p of every mode and a constant 1, so that the maps are linear.
     """
@@ -123,7 +121,7 @@ def _powers(scheme: Scheme, frequencies: Array, levels: int) -> ArrayPair:
 
 
 def with_all_digits(scheme: Scheme) -> Scheme:
-    """Return the scheme in decimal numbers, which `staged_step` takes in place of doubles."""
+    """The scheme in decimal numbers, which `staged_step` takes in place of doubles."""
     numbers = ("alpha", "delta", "gg", "step", "mass_damping", "stiffness_damping")
     fields: dict[str, Any] = {name: Decimal(getattr(scheme, name)) for name in numbers}
     if scheme.table is not None:
@@ -135,7 +133,7 @@ def with_all_digits(scheme: Scheme) -> Scheme:
 
 
 def _mode(exact: Scheme, w: float, levels: int) -> tuple[Array, tuple[float, float]]:
-    """Return the entries of the maps of one mode, (levels, 6), and (u, p) at step 1, p scaled.
+    """The entries of the maps of one mode, (levels, 6), and (u, p) at step 1, p scaled.
 
     The momentum is measured in the power of two that makes the off-diagonal entries about equal.
 
@@ -154,7 +152,7 @@ def _mode(exact: Scheme, w: float, levels: int) -> tuple[Array, tuple[float, flo
 
 
 def _one_step(exact: Scheme, w: float) -> tuple[Map, tuple[int, int]]:
-    """Return the map of one step, and (u, p) at step 1, from the scheme's own step.
+    """The map of one step, and (u, p) at step 1, from the scheme's own step.
 
     Under the load F = k the static displacement is 1, so that D is u and P is p; the inertia force of a state is
     k - k D - e P.

@@ -46,7 +46,7 @@ def squared_frequency(scheme: Scheme, omega: ArrayLike) -> Complex:
 
 
 def one_stage(scheme: Scheme) -> Stage:
-    """Return the only stage of a scheme.
+    """The only stage of a scheme.
 
     Raises
     ------
@@ -66,7 +66,7 @@ def acceleration_share(scheme: Scheme, omega: ArrayLike) -> Complex:
 
 
 def staged_amplitude(scheme: Scheme, omega: Array, k: float, load: float, base: float) -> Complex:
-    """Return the amplitudes of D, from the base, of a mode under dt^2 F = load and a base motion, at frequencies w.
+    """The amplitudes of D, from the base, of a mode under dt^2 F = load and a base motion, at frequencies w.
 
     Parameters
     ----------
@@ -135,7 +135,7 @@ def chosen(scheme: Scheme, frequencies: ArrayLike, exact: bool) -> tuple[Complex
 
 
 def answering(scheme: Scheme, frequencies: ArrayLike, exact: bool) -> tuple[Complex, Complex]:
-    """Return the squared frequency at which the undamped system answers, and the factor on its answer.
+    """The squared frequency at which the undamped system answers, and the factor on its answer.
 
     With C = a0 M + a1 K, (K + S C - W2 M) D = F is (1 + a1 S) (K - W2' M) D = F, W2' = (W2 - a0 S) / (1 + a1 S).
     """

@@ -31,7 +31,7 @@ def named_scheme(
     rho_inf: float | None = None,
     split: float | None = None,
 ) -> Scheme:
-    """Return a scheme by its name; Newmark's is `dda.Scheme(alpha, delta, gg, step)`.
+    """A scheme by its name; Newmark's is `dda.Scheme(alpha, delta, gg, step)`.
 
     Parameters
     ----------
@@ -41,8 +41,6 @@ def named_scheme(
         dt [s].
     gg : float
         Share of the velocity that a whole step starts with [-].
-    start : str
-        Initial acceleration, "consistent" or "zero".
     rho_inf : float, optional
         Spectral radius at infinite frequency [-], of all but the leapfrog.
     split : float, optional

@@ -12,13 +12,7 @@ from fem_reference.problem.checks import require
 
 @dataclass(frozen=True)
 class ColumnContact:
-    """A face across the column that opens or slips, per unit of area.
-
-    Raises
-    ------
-    ValueError
-        For a value out of its range, naming field, rule and value.
-    """
+    """A face across the column that opens or slips, per unit of area."""
 
     height: float  # above the base [m]
     stiffness: float  # k [Pa/m]; inf: a rigid stop, or faces that move alike until they slip

@@ -1,7 +1,7 @@
 """A meshed column on its contacts as a system of rows (`fem_reference.contact.system`), and where it begins.
 
-The runs of elements between the contacts are meshes of their own, the bodies of the system. What is prescribed has four
-parts: displacement, velocity and acceleration of the base, and the pressure on the surface.
+The runs of elements between the contacts are meshes of their own, the bodies of the system. What is prescribed are the
+four parts of an `Excitation`.
 """
 
 from __future__ import annotations

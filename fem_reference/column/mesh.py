@@ -96,16 +96,7 @@ class LineMesh:
 
 
 def line_mesh(ground: Ground, elements: Sequence[int], degree: int, springs: bool = True) -> LineMesh:
-    """Mesh a column.
-
-    Parameters
-    ----------
-    elements
-        Number of elements of each stratum.
-    degree
-        Of the elements, 1 or 2.
-    springs
-        Whether its joints have their springs; else they only cut the column.
+    """Mesh a column by so many elements of each stratum, of degree 1 or 2; without `springs` joints only cut it.
 
     Raises
     ------

@@ -76,21 +76,12 @@ class Ground:
         return np.cumsum([stratum.thickness for stratum in self.strata])
 
     def check_request(self, columns: Sequence[str], heights: Sequence[float], parts: Sequence[str] = PARTS) -> None:
-        """Raise for a column that is not available, or a height that is not in the column.
-
-        Parameters
-        ----------
-        columns
-            That are asked for: of the surface, of the base, or of a height by its number.
-        heights
-            Where the column is observed [m].
-        parts
-            What is known of a height.
+        """Check columns and heights [m] that are asked for; `parts` is what is known of a height.
 
         Raises
         ------
         ValueError
-            If one is neither.
+            For a column that is not available, or a height that is not in the column.
         """
         known = (DISPLACEMENT, PRESSURE, *(f"{part}_{n + 1}" for part in parts for n in range(len(heights))))
         for name in columns:

@@ -34,8 +34,6 @@ def line_response(
 
     Parameters
     ----------
-    elements, degree
-        Number of elements of each stratum, and their degree.
     frequencies
         Of the drive [Hz].
     at_top

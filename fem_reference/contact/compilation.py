@@ -55,17 +55,7 @@ FUNCTIONS = {
 def prepared(
     system: ContactSystem, steps: int, full: bool = False
 ) -> tuple[ContactSystem, Callable[..., Any] | None, tuple[str, ...]]:
-    """A system for a history of so many steps, in natural modes where it is long; what is compiled of the march; notes.
-
-    Parameters
-    ----------
-    system
-        The bodies on their contacts.
-    steps
-        Number of steps.
-    full
-        Whether nothing is saved.
-    """
+    """A system for so many steps, in natural modes where they are many and not `full`; the march compiled; notes."""
     unknowns = len(system.F)
     modal = not full and system.C is None and unknowns <= MODES and steps >= LONG
     run = None

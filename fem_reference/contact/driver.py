@@ -69,14 +69,10 @@ def cut_step(stepper: ContactStepper, marched: Marched, cut: Cut, row: Record) -
 
     Parameters
     ----------
-    stepper
-        The bodies and the scheme.
     marched
         How the step in one piece has failed, with the state before it.
-    cut
-        Factor and limit of the cuts.
     row
-        What is kept of the step (filled), one row.
+        What is kept of the step, filled.
 
     Returns
     -------

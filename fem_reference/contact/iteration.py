@@ -50,19 +50,10 @@ def find_contact(
 
     Parameters
     ----------
-    law, equations
-        The law, and equations that may serve again.
-    q
-        Relative displacements without forces at the end of the step, beyond the references [m].
-    gap, states
-        Relative displacements and states at its start.
+    law, equations, q, gap, states
+        As in `fem_reference.contact.law.solution`.
     fallback
         What follows where that does not end within `law.limit` solutions.
-
-    Returns
-    -------
-    tuple
-        Forces and places; states; number of solutions; how it has ended.
     """
     trial = solution(law, equations, q, gap, states, states)
     guess = states

@@ -85,13 +85,13 @@ class Trial(NamedTuple):
 
 
 def is_pressed(law: Law, states: States, row: int) -> bool:
-    """Tell whether a row has no partner, or one that is closed."""
+    """Whether a row has no partner, or one that is closed."""
     partner = law.partner[row]
     return bool(partner == row or states[partner] == INSIDE)
 
 
 def equations_of(law: Law, states: States, phi: Array) -> Equations:
-    """Return the equations of given states, solved.
+    """The equations of given states, solved.
 
     phi q + (phi W + c) N = 0 of rows inside, N = bound + tan(angle) N_p of those at a bound, N = 0 of those whose
     partner is open. Divided by its size each row is as good as any other for the pivots; phi and c may be zero.

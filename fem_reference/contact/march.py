@@ -139,16 +139,12 @@ def march(
     record: Record,
     fallback: Fallback | None = None,
 ) -> tuple[ContactState, int, int, int]:
-    """Make as many steps as the record has rows, while they have a contact and finite numbers.
+    """Make as many steps as the record has rows, and fill it, while they have a contact and finite numbers.
 
     Parameters
     ----------
-    stages, watch, state
-        The bodies in each stage of a step, what is observed, and the state to begin with.
     prescribed
         What is prescribed at the ends of the stages, shape (steps, stages, parts).
-    record
-        What is kept of each step (filled).
     fallback
         What finds the contact of a stage whose iteration does not end, `fall_back`; the march ends there if None.
 

@@ -137,10 +137,7 @@ class ContactStepper:
         )
 
     def march(self, state: ContactState, record: Record, ratio: float = 1.0) -> Marched:
-        """Make as many steps as the record has rows, of a `ratio` of the scheme's own length.
-
-        The rows of the completed steps are filled.
-        """
+        """Make as many steps as the record has rows, of a `ratio` of the scheme's own length, and fill their rows."""
         stages = self._stages(ratio)
         steps = len(record.solves)
         positions = state.position + ratio * np.arange(float(steps))

@@ -43,7 +43,7 @@ def slipping_rows(compliance: Array, strength: Array) -> ContactRows:
 def point_rows(
     stiffness: Array, shear_stiffness: Array, tangent: float | None, cohesion: Array, bonded: bool = False
 ) -> ContactRows:
-    """Rows of points: normal ones, and where they have springs of shear those of these.
+    """Rows of points, which never open if `bonded`: normal ones, and where they have springs of shear those of these.
 
     Parameters
     ----------
@@ -53,8 +53,6 @@ def point_rows(
         Of the angle of friction; None: what is closed never slips.
     cohesion
         Shear force that each point bears without pressure [N].
-    bonded
-        Whether they never open.
     """
     compliance = 1 / stiffness
     unlimited = np.full(len(stiffness), np.inf)

@@ -79,13 +79,7 @@ class BarsMotion:
     down: tuple[Wave, ...]  # d of each bar, from its top
 
     def at(self, times: ArrayLike) -> BarsHistory:
-        """The motion at instants in any order.
-
-        Raises
-        ------
-        ValueError
-            If an instant is not from 0 to `end`.
-        """
+        """The motion at instants from 0 to the end, in any order."""
         bars = range(len(self.problem.bars))
         velocity = self._rows(times, lambda time: [self._mean_velocity(i, time) for i in bars])
         joints = [self.joint(number, times) for number in bars]
@@ -93,19 +87,13 @@ class BarsMotion:
         return BarsHistory(instants(times, self.end), velocity, *rows)
 
     def _rows(self, times: ArrayLike, row: Callable[[arb], Sequence[float]]) -> Array:
-        """Numbers of an instant at instants in any order, shape (numbers, times)."""
+        """Numbers of an instant at instants until `end`, shape (numbers, times)."""
         t = instants(times, self.end)
         with precision(bits_of(self.digits)):
             return np.array([row(arb(s)) for s in t.tolist() or [0.0]]).T[:, : len(t)]
 
     def joint(self, number: int, times: ArrayLike) -> JointHistory:
-        """One joint at instants in any order.
-
-        Raises
-        ------
-        ValueError
-            If an instant is not from 0 to `end`.
-        """
+        """One joint at instants from 0 to `end`, in any order."""
         joint = self.joints[number]
 
         def row(time: arb) -> list[float]:
@@ -119,13 +107,7 @@ class BarsMotion:
         return JointHistory(*self._rows(times, row))
 
     def impulse(self, number: int, times: ArrayLike) -> Array:
-        """Integral of the force of a joint from t = 0 to instants in any order [Pa s], shape (times,).
-
-        Raises
-        ------
-        ValueError
-            If an instant is not from 0 to `end`.
-        """
+        """Integral of the force of a joint from t = 0 to instants until `end` [Pa s], shape (times,)."""
         joint = self.joints[number]
         data = self.problem.bars[number]
 
@@ -181,7 +163,7 @@ class BarsMotion:
 
 
 def least_terms(problem: BarsProblem, end: float) -> float:
-    """Return how many terms of series a motion takes at least, in two computations, with its springs closed.
+    """How many terms of series a motion takes at least, in two computations, with its springs closed.
 
     A joint goes on at least once in the time of a wave along a bar beside it, and looks for a fall in intervals over
     which the decay of its spring is a power series.
@@ -200,21 +182,13 @@ def least_terms(problem: BarsProblem, end: float) -> float:
 def solve(
     problem: BarsProblem, end: float, digits: int = DIGITS, limit: int = 10_000, work: Work | None = None
 ) -> BarsMotion:
-    """The exact motion of bars from t = 0 to `end` [s].
+    """The exact motion of bars from t = 0 to `end` [s]; `work` counts the terms of its series, and bounds them.
 
     Parameters
     ----------
-    problem
-        The bars, their joints, base and loads.
-    end
-        Last instant [s].
     digits
         Decimal digits of the first computation, at least 30. Twice as many are taken, up to `MOST_DIGITS`, until two
         computations agree on all switches to `PROMISED`; the last one is returned.
-    limit
-        Greatest number of switches.
-    work
-        Counts the terms of series, and bounds them; None: without a bound.
 
     Raises
     ------
@@ -223,7 +197,7 @@ def solve(
     TooManySwitchesError
         If there are more switches than `limit`.
     LostDigitsError
-        If waves and switches amplify the rounding until computations differ in every number of digits.
+        If waves and switches amplify rounding until computations differ in every number of digits.
     TooMuchWorkError
         If the motion takes more work than is allowed.
 

@@ -1,7 +1,7 @@
 """The block of one strain with no-tension corners and friction, exact in time: from switch to switch.
 
-A corner is closed while it presses, N = -p w >= 0, and open while its gap w is positive; closed, it sticks, or slips
-at |T| = tan(phi) N + C. How it gets from switch to switch, and what is proven of each, is told in `march`.
+What a closed corner bears is told in `block_model`, how it gets from switch to switch, and what is proven of each, in
+`march`.
 
 A corner at zero gap goes the way of the first derivative of its gap that is not zero: a block that touches
 at rest when a pressure is switched on lifts off at once, since its base accelerates upwards. In the same way a corner
@@ -45,27 +45,27 @@ REPORT_DIGITS = 40  # decimal digits in which the motion is evaluated where it i
 
 @dataclass(frozen=True)
 class BlockHistory:
-    """The motion at given instants; forces act on the block."""
+    """The motion at given instants, arrays of shape (times,), of M and N of (2, times); forces act on the block."""
 
-    time: Array  # instants [s], shape (times,)
+    time: Array  # [s]
     displacement: Array  # (u, v, r, ex, ey, gxy) of the centroid [m, rad, -], shape (6, times)
     velocity: Array  # their rates [m/s, 1/s], shape (6, times)
-    gap: Array  # gap w at M and N [m], negative when pressed, shape (2, times)
-    gap_velocity: Array  # rate of the gap, which is the normal velocity of the base corner [m/s], shape (2, times)
-    normal_force: Array  # N at M and N [N], upwards, without impulses, shape (2, times)
-    shear_force: Array  # T of the closed corners [N], towards +x, shape (2, times)
-    slide: Array  # slide s at M and N over the base [m], shape (2, times)
-    slipped: Array  # movement of the shear reference r by slipping until then, at M and N [m], shape (2, times)
-    states: Array  # 0 open or released, 1 sticks, 2 slips towards +x, -2 slips towards -x, at M and N, shape (2, times)
-    closed: Array  # 1 where a corner is closed, else 0, shape (2, times)
-    contact_pressure: Array  # (N_M + N_N) / a [Pa], shape (times,)
-    kinetic: Array  # kinetic energy [J], shape (times,)
-    strain: Array  # strain energy [J], shape (times,)
-    springs: Array  # energy of the normal and shear springs, of released ones too [J], shape (times,)
-    load: Array  # potential energy of pressure, traction and weight, -F x, less the base's work [J], shape (times,)
-    released: Array  # energy of the shear springs lost by opening until then [J], shape (times,)
-    friction: Array  # energy lost by friction until then [J], shape (times,)
-    damped: Array  # energy lost in dashpots and by impacts until then [J], shape (times,)
+    gap: Array  # w [m], negative when pressed
+    gap_velocity: Array  # its rate, the normal velocity of the base corner [m/s]
+    normal_force: Array  # N [N], upwards, without impulses
+    shear_force: Array  # T of the closed corners [N], towards +x
+    slide: Array  # s over the base [m]
+    slipped: Array  # movement of the shear reference r by slipping until then [m]
+    states: Array  # 0 open or released, 1 sticks, 2 slips towards +x, -2 slips towards -x
+    closed: Array  # 1 where a corner is closed, else 0
+    contact_pressure: Array  # (N_M + N_N) / a [Pa]
+    kinetic: Array  # energy [J]
+    strain: Array  # energy [J]
+    springs: Array  # energy of the normal and shear springs, of released ones too [J]
+    load: Array  # potential energy of pressure, traction and weight, -F x, less the base's work [J]
+    released: Array  # energy of the shear springs lost by opening until then [J]
+    friction: Array  # energy lost until then [J]
+    damped: Array  # energy lost in dashpots and by impacts until then [J]
     displacement_radius: Array  # greatest distance of each displacement from the true one, shape (6, times)
 
     @property
@@ -81,17 +81,11 @@ class BlockMotion(ProvenMotion):
     problem: BlockProblem
     closed_at_start: tuple[bool, bool]  # whether M and N are closed just after t = 0
     model: BlockModel = field(repr=False, compare=False)
-    impacts: tuple[Impact, ...] = ()  # impacts on a rigid contact in the order of time, but for those of cascades
+    impacts: tuple[Impact, ...] = ()  # on a rigid contact in the order of time, but for those of cascades
     cascades: tuple[Cascade, ...] = ()  # infinitely many impacts that end in rest, in the order of time
 
     def at(self, times: ArrayLike) -> BlockHistory:
-        """The motion at instants in any order.
-
-        Raises
-        ------
-        ValueError
-            If an instant is not from 0 to `end`.
-        """
+        """The motion at instants from 0 to the end, in any order."""
         return BlockHistory(**self.columns(self.model, times, REPORT_DIGITS))
 
     def _at(self, instant: Instant) -> dict[str, Any]:
@@ -191,15 +185,9 @@ def solve(problem: BlockProblem, end: float, digits: int = DIGITS, limit: int = 
 
     Parameters
     ----------
-    problem
-        The block, its corners and its loads.
-    end
-        Last instant [s].
     digits
         Decimal digits of the computation, at least 30; more are taken, up to `MOST_DIGITS`, where the instants of
         the switches are not enclosed to `PROMISED`.
-    limit
-        Greatest number of switches.
 
     Raises
     ------

@@ -126,8 +126,6 @@ class Hops:
 
         Parameters
         ----------
-        state
-            The state without them.
         speeds
             Sum of the speeds at which the gap closes [m/s].
         spread
@@ -139,12 +137,10 @@ class Hops:
         return State(state.u + late.u * push, state.v + late.v * push)
 
     def find_hop(self, state: State, speed: arb) -> Hop | None:
-        """The flight that begins with an impact, None if it is not proven to be short and concave.
+        """The flight that begins right after an impact, None if it is not proven to be short and concave.
 
         Parameters
         ----------
-        state
-            The state right after the impact.
         speed
             Rate at which the gap opens [m/s], positive.
         """

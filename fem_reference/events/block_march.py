@@ -1,8 +1,7 @@
 """The motion of a block from switch to switch, with the base below it and impacts on a rigid contact.
 
-An impact on a rigid contact changes the rates at an instant that is enclosed like that of a switch. Where impacts
-follow each other as short hops, each number is followed in its own ball until they are over or until infinitely many
-of them are proven to accumulate (`block_impacts`).
+The instant of an impact is enclosed like that of a switch. Where impacts follow each other as short hops, each number
+is followed in its own ball until they are over or proven to accumulate (`block_impacts`).
 """
 
 from __future__ import annotations
@@ -67,7 +66,7 @@ class BlockMarch(March):
         return Start(ZERO, u, v, [reference, reference]), states
 
     def jump(self, rates: Sequence[arb]) -> arb_mat:
-        """Return what the block takes over, as seen from its base, of a jump of the base's rates."""
+        """What the block takes over, as seen from its base, of a jump of the base's rates."""
         return column([*rates, *[ZERO] * 4])
 
     def check_work(self) -> None:
@@ -88,7 +87,7 @@ class BlockMarch(March):
         if tuple(was) != self.states:
             self.last_switch = len(self.nodes)
 
-    # -- impacts
+    # ---- impacts ----
 
     def strike(self, touches: bool) -> arb_mat | None:
         """Let the rates jump where the gap of a rigid contact is zero and closes."""
@@ -195,8 +194,6 @@ class BlockMarch(March):
 
         Parameters
         ----------
-        hops, rest
-            What they come to.
         state
             The state after the last impact that was followed, at the present midpoint of its instant.
         time

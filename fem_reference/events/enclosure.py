@@ -102,12 +102,10 @@ class Fall(NamedTuple):
 def polynomial(
     coefficients: list[arb], end: arb, begin: arb = ZERO, tail: arb = ZERO, most: float = math.inf
 ) -> Smooth:
-    """A polynomial with balls for coefficients as a function of the distance from `begin`.
+    """A polynomial, given by the balls of its coefficients, as a function of the distance from `begin`.
 
     Parameters
     ----------
-    coefficients
-        Of its powers.
     end
         Greatest argument of the polynomial.
     begin
@@ -141,8 +139,6 @@ def first_fall(function: Smooth, end: arb, touches: list[arb] | None = None, flo
     ----------
     function
         Positive just after zero.
-    end
-        End of the search.
     touches
         Takes the points at which the function comes so near to zero, over intervals of half the digits, that a
         crossing can be neither proven nor excluded; they count as none.

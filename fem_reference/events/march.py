@@ -1,7 +1,6 @@
 """The motion from switch to switch, of a block or a column: steps, settling and recording.
 
-The centre of the motion is computed in so many digits without radii. How far it may be off is a set that is carried
-along (`ellipsoid`).
+The centre of the motion is computed without radii; how far it may be off is a set that is carried along (`ellipsoid`).
 
 **Switches.** Between two of them the motion is linear, and its Taylor series is summed in balls (`series`). The next
 switch is the first instant at which a gap or a normal force falls through zero, the shear force of a contact that
@@ -74,7 +73,7 @@ class March:
         self.resting: set[int] = set()  # contacts found at zero without force in all derivatives
         self.misses = 0  # times in succession that a fall was looked for in vain
 
-    # -- what a block or a column says of itself
+    # ---- what a block or a column says of itself ----
 
     def initial(self) -> tuple[Start, States]:
         """Where the motion begins, and the states of contacts whose functions rest there."""
@@ -94,7 +93,7 @@ class March:
     def follow_impact(self) -> None:
         """Go on from an impact."""
 
-    # -- the march
+    # ---- the march ----
 
     @property
     def now(self) -> float:
@@ -246,7 +245,7 @@ class March:
         self.start = self.start._replace(references=references)
         return radii
 
-    # -- settling
+    # ---- settling ----
 
     def settle(self, zeros: Mapping[tuple[int, int], int], recording: bool = True) -> None:
         """Let the contacts take the states that agree with the motion from now on.
@@ -300,7 +299,7 @@ class March:
             self.record(was)
 
     def _lead(self, watch: Watch, segment: Segment, known: Mapping[tuple[int, int], int]) -> tuple[int | None, int]:
-        """Return the number of the first term of a function that is not zero, and its sign; None: all are."""
+        """The number of the first term of a function that is not zero, and its sign; None: all are."""
         terms = segment.function(watch)
         reaches = self.transport.reach(watch, self.states, segment, self.offset).terms()
         zeros = known.get((watch.contact, watch.side), 0) - watch.order

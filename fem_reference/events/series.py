@@ -124,7 +124,7 @@ class System:
         return self.rates[states]
 
     def rate(self, states: States) -> float:
-        """Bound of the rates of the motion while the contacts keep their states [rad/s]."""
+        """The bound of the motion [rad/s]."""
         return self.bounds_of(states).motion
 
     def growth(self, states: States, radii: Array, passed: float) -> Array:
@@ -292,19 +292,17 @@ def diagonal(entries: Sequence[arb]) -> arb_mat:
 
 
 def step_length(system: System, states: States, drives: Sequence[Piece]) -> float:
-    """Return the longest step; infinite where nothing bounds it [s]."""
+    """The longest step; infinite where nothing bounds it [s]."""
     return min([system.angle / system.rate(states), *(piece.longest_step() for piece in drives)])
 
 
 def expand(
     system: System, states: States, start: Start, drives: Sequence[Piece], length: float, count: int | None = None
 ) -> Segment:
-    """Return the series of a step.
+    """The series of a step.
 
     Parameters
     ----------
-    system, states, start, drives
-        What moves, the states of its contacts, where it is and what drives it.
     length
         Of the step [s].
     count

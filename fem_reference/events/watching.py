@@ -72,14 +72,7 @@ class Watched(NamedTuple):
     reach: Callable[[Watch, bool], Reach]  # what terms of a function may be off by, also where its start is a switch
 
     def clear(self) -> tuple[float, float, list[Watch]]:
-        """Where floats prove all functions to be positive.
-
-        Returns
-        -------
-        share, width, doubtful
-            The part of the step throughout which they are; the length of the next part, in which that cannot be proven,
-            0 where there is none; and the functions that may fall in or after it.
-        """
+        """Where floats prove all functions to be positive: share, width and the doubtful ones, as of `first_doubt`."""
         watches = [watch for watch in self.watches if watch.lead is not None]
         if not watches:
             return 1.0, 0.0, []
@@ -98,7 +91,7 @@ class Watched(NamedTuple):
     def first_fall(
         self, low: float, high: arb, watches: Sequence[Watch], touches: list[arb]
     ) -> tuple[Fall, Watch] | None:
-        """Return the first fall of some functions between two shares of the step, and which function falls.
+        """The first fall of some functions between two shares of the step, and which function falls.
 
         Raises
         ------
@@ -128,7 +121,7 @@ class Watched(NamedTuple):
         return first
 
     def root_near(self, watch: Watch, share: arb) -> arb:
-        """Return the root of the series itself next to the fall of a function, by Newton's method."""
+        """The root of the series itself next to the fall of a function, by Newton's method."""
         value = arb_poly([c.mid() for c in self.segment.function(watch)])
         slope = value.derivative()
         x = share.mid()

@@ -43,13 +43,7 @@ TARGET = 1e-11
 
 @dataclass(frozen=True)
 class Bar(BarProblem):
-    """An elastic bar on a spring under a pressure on its top, at once or in a ramp; its spring also pulls.
-
-    Raises
-    ------
-    ValueError
-        For a value out of its range, naming field, rule and value.
-    """
+    """An elastic bar on a spring under a pressure on its top, at once or in a ramp; its spring also pulls."""
 
     ramp: float = 0.0  # time in which the pressure rises linearly from zero [s]
 

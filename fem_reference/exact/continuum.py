@@ -44,8 +44,6 @@ def histories(times: Array, kappa: float, rate: float, columns: tuple[str, ...])
         Stiffness of the spring over that of the bar, k h / (E W).
     rate
         Damping rate per travel time, c h / (wave speed).
-    columns
-        Names of the columns.
 
     Raises
     ------

@@ -52,7 +52,7 @@ CHUNK = 2**22
 
 
 def history(waves: Waves, first: float, times: Array, kappa: float, a: float) -> Array:
-    """History of the damped bar, shape (times,).
+    """History of the damped bar by kappa, the spring's stiffness over that of the bar, and a, shape (times,).
 
     Parameters
     ----------
@@ -60,10 +60,6 @@ def history(waves: Waves, first: float, times: Array, kappa: float, a: float) ->
         Those of the undamped bar, and the arrival of the first one.
     times
         Instants in travel times.
-    kappa
-        Stiffness of the spring over that of the bar.
-    a
-        Half the damping rate per travel time.
 
     Raises
     ------

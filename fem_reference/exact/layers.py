@@ -48,7 +48,7 @@ def amplitudes(
     heights: Sequence[float] = (),
     squared: ArrayLike | None = None,
 ) -> tuple[dict[str, Complex], dict[str, Complex]]:
-    """Return the complex amplitudes of columns for a unit velocity at the base, and for a unit pressure on the top.
+    """The complex amplitudes of columns for a unit velocity at the base, and for a unit pressure on the top.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def amplitudes(
 
 
 def _part(states: dict[int, State], name: str) -> Complex:
-    """Return a column's part of the states: of the base -1, of the surface -2, else of a height by its number."""
+    """A column's part of the states: of the base -1, of the surface -2, else of a height by its number."""
     if name == PRESSURE:
         return -states[-1][1]
     if name == DISPLACEMENT:
@@ -110,7 +110,7 @@ def _descend(ground: Ground, heights: Sequence[float], w2: Complex, state: State
 
 
 def through(modulus: float, density: float, depth: float, w2: Complex, state: State) -> State:
-    """Return the state deeper in a layer by some depth [m]."""
+    """The state deeper in a layer by some depth [m]."""
     k = np.sqrt(density * w2 / modulus)
     cosine = np.cos(k * depth)
     sine = np.sin(k * depth)
@@ -119,7 +119,7 @@ def through(modulus: float, density: float, depth: float, w2: Complex, state: St
 
 
 def across(stiffness: float, state: State) -> State:
-    """Return the state below a joint."""
+    """The state below a joint."""
     u, sigma = state
     return u - sigma / stiffness, sigma
 
@@ -132,7 +132,7 @@ def solve_layers(
     columns: Sequence[str] = (DISPLACEMENT, PRESSURE),
     heights: Sequence[float] = (),
 ) -> Result:
-    """Return the exact history at the steps, with the change by the last halving of the samples as its error.
+    """The exact history at the steps, with the change by the last halving of the samples as its error.
 
     Parameters
     ----------
@@ -157,7 +157,7 @@ def solve_layers(
     picked = np.arange(1, steps + 1)
 
     def synthesis(count: int) -> Array:
-        """Return the columns at the steps from `count` samples a step, shape (columns, steps)."""
+        """The columns at the steps from `count` samples a step, shape (columns, steps)."""
         spacing = scheme.step / count
         samples = next_fast_len(math.ceil(period / spacing), real=True)
         shift = -math.log(ROUND) / (samples * spacing)

@@ -7,8 +7,8 @@ s^2 D = (psi / phi) (A - r A_0), with psi = 1 - am + am z, phi = 1 - af + af z a
     s^2 = (psi / phi) (1 - z) (1 - gg z) / (dt^2 b),   b = (e_0 z + beta) (1 - gg z) + d_u gg z (g_0 z + gamma)
     r   = (beta (1 - gg z) + d_u gg z gamma) / b
 
-in every mode alike, so that with x = s H / c the bar's own closed forms hold: a pressure at one end moves, beyond
-the rigid mode and in units of H / E,
+in every mode alike, so that with x = s H / c the bar's own closed forms hold: a pressure at one end moves, beyond the
+rigid mode and in units of H / E,
 
     that end by (x coth x - 1) / x^2,  the other by (x / sinh x - 1) / x^2,  mid-height by (x / (2 sinh(x/2)) - 1) / x^2
 
@@ -65,8 +65,7 @@ class OpeningBar(BarProblem):
         """History under a scheme; row 0 is step 1.
 
         Its columns are `displacement` of the mid-height [m], `contact_pressure` N / W [Pa], `gap` w under the base [m],
-        negative where pressed, `closed`, 1 where the base is closed and 0 where open [-], and `velocity` of the centre
-        of mass, upwards [m/s].
+        negative where pressed, `closed`, 1 or else 0 [-], and `velocity` of the centre of mass, upwards [m/s].
 
         Raises
         ------
@@ -172,8 +171,6 @@ def _stepped(bar: OpeningBar, scheme: Scheme, loaded: Array, free: Array) -> dic
 
     Parameters
     ----------
-    bar, scheme
-        The bar and its scheme.
     loaded
         Weights of the base's own pressure [m/Pa], shape (steps + 1,).
     free

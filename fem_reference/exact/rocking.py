@@ -41,13 +41,7 @@ FALLEN = math.pi / 2
 
 @dataclass(frozen=True)
 class RockingBlock:
-    """A rigid rectangle on a rigid base.
-
-    Raises
-    ------
-    ValueError
-        For a value out of its range, naming field, rule and value.
-    """
+    """A rigid rectangle on a rigid base."""
 
     width: float  # a [m]
     height: float  # h [m]
@@ -107,13 +101,7 @@ class RockingMotion:
     overturned: bool  # whether it fell on its side
 
     def at(self, times: ArrayLike) -> tuple[Array, Array]:
-        """Rotation [rad] and its rate [rad/s] at instants, after an impact at it.
-
-        Raises
-        ------
-        ValueError
-            If an instant is not from 0 to `end`.
-        """
+        """Rotation [rad] and its rate [rad/s] at instants from 0 to `end`, after an impact at it."""
         t = instants(times, self.end)
         motion = np.empty((2, len(t)))
         for i, here in by_pieces(t, [swing.start for swing in self.swings]):
@@ -126,8 +114,6 @@ def solve(block: RockingBlock, end: float, tilt: float) -> RockingMotion:
 
     Parameters
     ----------
-    block
-        The block.
     end
         Last instant [s]; the motion ends earlier if the block falls on its side.
     tilt

@@ -45,7 +45,7 @@ class Reduced:
     """A history from a small space."""
 
     history: Array  # columns of every step, shape (columns, steps)
-    vectors: int  # number of vectors of the space [-]
+    vectors: int  # of the space [-]
     estimate: float  # estimated error over the maximum value [-]
 
 
@@ -57,9 +57,7 @@ def reduced(stepper: Stepper, rows: Array, steps: int) -> Reduced | str:
     stepper
         The block under a constant load.
     rows
-        Rows of the columns, shape (columns, unknowns).
-    steps
-        Number of steps.
+        Of the columns, shape (columns, unknowns).
     """
     if reason := applicable(stepper.scheme):
         return reason

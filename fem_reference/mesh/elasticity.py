@@ -67,7 +67,7 @@ class Rule(NamedTuple):
 
 
 def vector_basis(mesh: Mesh, degree: int) -> Basis:
-    """Displacement basis of the given degree on a mesh of triangles or quadrilaterals."""
+    """Displacement basis of a degree on a mesh of triangles or quadrilaterals."""
     element = ElementVector(ELEMENTS[mesh.t.shape[0], degree]())
     # One order beyond 2 * degree per direction integrates the Jacobian of a bilinear cell exactly.
     return Basis(mesh, element, intorder=2 * degree + 1)
@@ -76,7 +76,7 @@ def vector_basis(mesh: Mesh, degree: int) -> Basis:
 def assembled(terms: list[tuple[float, BilinearForm]], basis: Basis, congruent: bool) -> csr_array:
     """Matrix of a sum of coefficients times forms; a term whose coefficient is zero leaves no entry.
 
-    Where all cells are translates of the first one its element matrix is that of all.
+    `congruent`: all cells are translates of the first one, whose element matrix is that of all.
     """
     terms = [(coefficient, form) for coefficient, form in terms if coefficient != 0]
     if not congruent:
@@ -92,12 +92,12 @@ def assembled(terms: list[tuple[float, BilinearForm]], basis: Basis, congruent: 
 
 
 def mass(basis: Basis, density: float, congruent: bool = False) -> csr_array:
-    """Consistent mass matrix [kg]; `congruent` where all cells are translates of the first one."""
+    """Consistent mass matrix [kg]; `congruent` as in `assembled`."""
     return assembled([(density, mass_form)], basis, congruent)
 
 
 def stiffness(basis: Basis, body: Elastic, congruent: bool = False) -> csr_array:
-    """Elastic stiffness matrix [N/m]; `congruent` where all cells are translates of the first one."""
+    """Elastic stiffness matrix [N/m]; `congruent` as in `assembled`."""
     return assembled([(body.shear_modulus, strain_form), (body.lame, dilatation_form)], basis, congruent)
 
 
@@ -133,12 +133,10 @@ def edge_rule(
     intervals: Sequence[tuple[float, float]],
     quadrature: tuple[Array, Array],
 ) -> Rule:
-    """Rule over the part of a straight edge that lies in intervals of its arc length.
+    """Rule over the part of a straight edge, given by its facets, that lies in intervals of its arc length.
 
     Parameters
     ----------
-    mesh, facets
-        Facets of the edge.
     origin, tangent
         Start and unit direction of the edge, shape (2,).
     intervals

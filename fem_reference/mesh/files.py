@@ -28,7 +28,7 @@ def library() -> Any:
 
 
 def read_data(path: str) -> Any:
-    """Return the points and cells of a file as meshio has them.
+    """The points and cells of a file as meshio has them.
 
     Raises
     ------
@@ -41,7 +41,7 @@ def read_data(path: str) -> Any:
 
 
 def read_mesh(path: str) -> Mesh:
-    """Return the plane mesh of a file.
+    """The plane mesh of a file.
 
     Raises
     ------

@@ -20,7 +20,7 @@ from fem_reference.problem.problem import Array, Indices, Problem
 class TaggedMesh:
     """A mesh and the facets of its base and top."""
 
-    mesh: Mesh  # the scikit-fem mesh, coordinates relative to the start of the base [m]
+    mesh: Mesh  # coordinates relative to the start of the base [m]
     base: Indices  # facets of the base
     top: Indices  # facets of the top
 
@@ -41,8 +41,6 @@ def structured(problem: Problem, half: bool = False) -> TaggedMesh:
 
     Parameters
     ----------
-    problem
-        The block, meshed with ``elements`` per side.
     half
         Mesh the half next to the start of the base only (``elements`` must be even).
 
@@ -114,7 +112,7 @@ def _check_outline(problem: Problem, tagged: TaggedMesh) -> None:
 
 
 def facets_along(mesh: Mesh, start: Array, end: Array, slack: float) -> tuple[Indices, Array]:
-    """Return the boundary facets that lie on a straight piece of the outline, wholly or in part.
+    """The boundary facets that lie on a straight piece of the outline, wholly or in part.
 
     Returns
     -------
@@ -143,7 +141,7 @@ def facets_along(mesh: Mesh, start: Array, end: Array, slack: float) -> tuple[In
 
 
 def facets_between(mesh: Mesh, start: ArrayLike, end: ArrayLike, slack: float) -> Indices:
-    """Return the boundary facets that make up a straight piece of the outline.
+    """The boundary facets that make up a straight piece of the outline.
 
     Raises
     ------

@@ -63,7 +63,7 @@ class Assembled:
     K: csr_array  # elastic stiffness without the springs [N/m]
     springs: csr_array  # stiffness of the foundation [N/m]
     F: Array  # constant load of the problem [N]
-    basis: Basis  # the displacement basis; coordinates relative to the start of the base
+    basis: Basis  # of displacements; coordinates relative to the start of the base
     observers: dict[str, Array]  # row of each column of a history
 
 
@@ -88,13 +88,7 @@ def build(problem: Problem, full: bool = False) -> Model:
 
 
 def assemble(problem: Problem) -> Assembled:
-    """Assemble mass, elastic stiffness, springs, load and observers of the whole block.
-
-    Raises
-    ------
-    ValueError
-        If the block cannot be meshed.
-    """
+    """Assemble the whole block."""
     return _assemble_on(problem, block_mesh(problem))
 
 
@@ -177,11 +171,6 @@ def column(problem: Problem) -> Model:
 
     With the width W and line matrices L = (u', v') and B = (u, v), rho W B for the mass, and
     E W L + 2 p b b' for v, G W L + 2 p_s b b' for u, with b the value at the base.
-
-    Raises
-    ------
-    ValueError
-        If the block is not an upright rectangle.
     """
     line = line_of(problem)
     size = len(line.height)

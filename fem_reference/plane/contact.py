@@ -32,13 +32,7 @@ UNIT = 1e-9
 
 @dataclass(frozen=True)
 class PatchContact:
-    """A spring of a body on another one or on the fixed base, over a patch of its outline.
-
-    Raises
-    ------
-    ValueError
-        For a value out of its range, naming field, rule and value.
-    """
+    """A spring of a body on another one or on the fixed base, over a patch of its outline."""
 
     first: int  # number of the body
     second: int | None  # of the body that it is on, None: the base
@@ -84,7 +78,7 @@ class ContactPoints(NamedTuple):
 
 
 def points_of(contacts: Sequence[PatchContact], bodies: Sequence[BodyElements], first: Sequence[int]) -> ContactPoints:
-    """Return the points of contacts.
+    """The points of contacts.
 
     Parameters
     ----------

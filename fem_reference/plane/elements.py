@@ -55,7 +55,7 @@ class BodyElements:
         self.F = self._load()[self.free]
 
     def elastic(self) -> csr_array:
-        """Return the stiffness of all unknowns [N/m]."""
+        """The stiffness of all unknowns [N/m]."""
         return elasticity.stiffness(self.basis, self.body)
 
     def _facets(self, part: Segment) -> Indices:
@@ -115,7 +115,7 @@ class BodyElements:
         return self._means[:, self.free]
 
     def observer(self, start: Point, end: Point) -> Array:
-        """Return the rows of the mean displacement in x and y of a part of the outline, or of a point, (2, unknowns).
+        """The rows of the mean displacement in x and y of a part of the outline, or of a point, (2, unknowns).
 
         Raises
         ------
@@ -137,7 +137,7 @@ class BodyElements:
         return np.array([dilatation + 2 * shear * e_xx, dilatation + 2 * shear * e_yy, shear * g_xy])
 
     def stress_error(self, D: Array) -> float:
-        """Return the largest difference of a stress component from the loads' own, over the largest of these.
+        """The largest difference of a stress component from the loads' own, over the largest of these.
 
         Raises
         ------

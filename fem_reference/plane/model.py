@@ -103,7 +103,7 @@ class PlaneModel:
         self.base_motion = base_motion
 
     def observer(self, start: Point, end: Point, body: int = 0) -> Array:
-        """Return the rows of the mean displacement in x and y of a part of a body's outline, or of a point.
+        """The rows of `BodyElements.observer` of a body.
 
         Raises
         ------
@@ -113,7 +113,7 @@ class PlaneModel:
         return self.rows(self.parts[body].observer(start, end), body)
 
     def means(self, body: int) -> Array:
-        """Rows of the means over a body of u, v, rotation, e_xx, e_yy and g_xy, shape (6, unknowns)."""
+        """Rows of `BodyElements.means` of a body, shape (6, unknowns)."""
         return self.rows(self.parts[body].means, body)
 
     def rows(self, of_body: Array, body: int) -> Array:
@@ -128,7 +128,7 @@ class PlaneModel:
         return np.asarray(dense_block_diag(*(part.motions for part in self.parts)))
 
     def highest_frequency(self) -> float:
-        """Return the largest natural frequency of all states: all points closed and sticking [rad/s]."""
+        """The largest natural frequency of all states: all points closed and sticking [rad/s]."""
         return largest_frequency(self._stiffness(self.points.all_closed), self.M)
 
     @cached_property
@@ -164,17 +164,11 @@ class PlaneModel:
         return self.settled.D
 
     def stress_error(self) -> float:
-        """Return the largest difference of a stress component at rest from the loads' own, of the first body.
-
-        Raises
-        ------
-        ValueError
-            The loads are not those of a stress.
-        """
+        """Return `BodyElements.stress_error` of the first body at rest."""
         return self.parts[0].stress_error(self.rest[: self.first[1]])
 
     def modes(self, scheme: Scheme, count: int) -> tuple[Mode, ...]:
-        """Return the lowest modes that are no free motion, all points closed and sticking, in rising order."""
+        """The lowest modes that are no free motion, all points closed and sticking, in rising order."""
         closed = self.points.all_closed
         K = self._stiffness(closed)
         first = self.parts[0].body
@@ -188,7 +182,7 @@ class PlaneModel:
     def history(
         self, scheme: Scheme, steps: int, rows: Array, *, settled: bool = False, limit: int = 6
     ) -> BodiesResult:
-        """Return what some rows observe of the bodies, at each step, with their contacts and energies.
+        """What some rows observe of the bodies, at each step, with their contacts and energies.
 
         They begin unstrained with their velocities, or at rest under their loads. A numerical failure is an outcome:
         the history then ends with the last step that was reached.
@@ -292,13 +286,7 @@ class PlaneModel:
         return np.asarray(motions @ null_space(np.vstack([springs, np.zeros(motions.shape[1])]), rcond=UNHELD))
 
     def _rest_of(self, closed: Flags) -> Array:
-        """Displacements at rest with springs at the closed rows alone, orthogonal to what they do not hold.
-
-        Raises
-        ------
-        ValueError
-            The loads have a resultant that nothing holds.
-        """
+        """Displacements at rest with springs at the closed rows alone, orthogonal to what they do not hold."""
         points = self.points
         F = self.F - points.B[closed].T @ (points.gap / points.rows.compliance)[closed]
         K = self._stiffness(closed)

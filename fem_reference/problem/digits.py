@@ -55,7 +55,7 @@ def coarse(problem: Problem, step: float, opens: bool = False) -> tuple[str, ...
 
 
 def bounded(history: Array, pressure: float) -> Array:
-    """Return the history of a unit pressure times the pressure, infinite from its first overflow on.
+    """The history of a unit pressure times the pressure, infinite from its first overflow on.
 
     Parameters
     ----------

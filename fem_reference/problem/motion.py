@@ -21,8 +21,8 @@ class Motion:
     """
 
     time: tuple[float, ...]  # instants [s], increasing
-    x: tuple[float, ...]  # horizontal displacement at the instants [m]
-    y: tuple[float, ...]  # vertical displacement at the instants [m]
+    x: tuple[float, ...]  # displacement at the instants [m]
+    y: tuple[float, ...]  # the same [m]
 
     def __post_init__(self) -> None:
         if not len(self.time) == len(self.x) == len(self.y) > 0:

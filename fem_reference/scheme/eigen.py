@@ -22,23 +22,16 @@ DENSE = 400
 def modes(
     problem: Problem, scheme: Scheme, count: int = 12, full: bool = False, model: Model | None = None
 ) -> tuple[Mode, ...]:
-    """Natural modes, greatest share of the static response first.
+    """Natural modes, greatest share of the static response first, which is that of the first axial mode.
 
     Parameters
     ----------
-    problem, scheme
-        What is solved and how it is integrated.
     count
         Number of lowest modes computed; doubled until the first axial mode is certainly among them.
     full
         Use the whole block instead of the model with exact savings.
     model
         The model of `problem` (and `full`) where it was built before.
-
-    Returns
-    -------
-    tuple of Mode
-        The first one is the first axial mode.
     """
     model = build(problem, full) if model is None else model
     F = model.F if np.any(model.F) else _carried(problem, model)

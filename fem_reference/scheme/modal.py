@@ -118,7 +118,7 @@ def _newmark_bounded(scheme: Scheme) -> bool:
 
 
 def weighted_response(omega: Array, weights: Array, scheme: Scheme, steps: int) -> Array:
-    """Sum over modes of weights times w^2 D under a unit load from rest, at steps 1 to `steps`.
+    """Sum over modes of weights times w^2 D under a unit load from rest, at steps 1 to `steps`, (quantities, steps).
 
     Parameters
     ----------
@@ -126,11 +126,6 @@ def weighted_response(omega: Array, weights: Array, scheme: Scheme, steps: int) 
         W = w dt of each mode, shape (modes,).
     weights
         One row for each quantity, shape (quantities, modes).
-
-    Returns
-    -------
-    ndarray
-        Shape (quantities, steps).
     """
     total = np.zeros((len(weights), steps))
     for begin in range(0, len(omega), CHUNK):
@@ -201,8 +196,6 @@ def power_histories(step: Extended, start: Array, weights: Array, steps: int) ->
         State of each mode at t = 0, shape (modes, 4).
     weights
         Shape (quantities, modes).
-    steps
-        Number of steps.
     """
     block = math.isqrt(steps - 1) + 1
     rows = np.empty((block, *start.shape))

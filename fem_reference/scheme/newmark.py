@@ -18,9 +18,9 @@ from fem_reference.scheme.stage import Body, Motion, step_change
 class Work:
     """Counters of the work done."""
 
-    factorisations: int = 0  # number of factorisations [-]
-    solves: int = 0  # number of solutions with a factorised matrix [-]
-    nonzeros: int = 0  # stored entries of the last matrix factorised [-]
+    factorisations: int = 0
+    solves: int = 0  # with a factorised matrix [-]
+    nonzeros: int = 0  # of the last matrix factorised [-]
 
     def factor(self, matrix: csr_array) -> Callable[[Array], Array]:
         """Factorise a symmetric positive definite matrix; return the counted solver of right-hand sides.
@@ -59,7 +59,7 @@ class Operator:
 
 
 def operator(matrix: Any) -> Operator:
-    """Return the products with a sparse matrix."""
+    """The products with a sparse matrix."""
     return Operator(lambda vector: matrix @ vector)
 
 

@@ -83,7 +83,7 @@ def free_acceleration(
 def end_of_stage(
     stage: Stage, h: float, gg: float, start: Motion, before: Motion, predicted: Any, e: Any, origin: Any
 ) -> Motion:
-    """Return the end of a stage with the acceleration e; its displacement is counted from an origin, D or zero."""
+    """The end of a stage with the acceleration e; its displacement is counted from an origin, D or zero."""
     b = stage.beta / (1 - stage.am) * h**2
     A = e if stage.am == 0 else e / (1 - stage.am)
     return Motion(origin + (predicted + b * e), velocity_at_end(stage, h, gg, start, before, A), A)
@@ -108,7 +108,7 @@ def mean_load(stage: Stage, first: Any, last: Any) -> Any:
 
 
 def step_change(scheme: Any, gg: float, h: float, bodies: Any, start: Motion, loads: Any) -> Motion:
-    """Return the end of a step as a change of the displacement, under the loads at its start and at the stages' ends.
+    """The end of a step as a change of the displacement, under the loads at its start and at the stages' ends.
 
     Parameters
     ----------

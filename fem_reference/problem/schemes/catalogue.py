@@ -31,7 +31,7 @@ def named_scheme(
     rho_inf: float | None = None,
     split: float | None = None,
 ) -> Scheme:
-    """Return a scheme by its name.
+    """A scheme by its name.
 
     Parameters
     ----------
