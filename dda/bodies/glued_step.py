@@ -228,14 +228,8 @@ def glued_march(
 def start_state(glue: Glue, opening: Array, velocity: Array, moved: Array) -> GluedState:
     """The state at t = 0: unstrained, without contact force.
 
-    Parameters
-    ----------
-    opening : (m,) array
-        Of the rows of contact [m].
-    velocity : (n,) array
-        Of the modes.
-    moved : (2,) array
-        Displacement of what is fixed, which stretches the glue [m].
+    `opening` is that of the rows [m], (m,), `velocity` that of the modes, (n,). What is fixed has `moved` by (x, y),
+    which stretches the glue [m].
     """
     scheme = glue.scheme
     force = -(scheme.step**2 * (glue.equations.kappa @ (glue.equations.G @ moved)))

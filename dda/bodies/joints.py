@@ -166,10 +166,7 @@ def common_part(
 ) -> tuple[Point, Point] | None:
     """The ends of what an edge shares with another one on its line, in its own direction.
 
-    Parameters
-    ----------
-    slack
-        How far the other one may lie beside the line; what is shorter is none [m].
+    The other one may lie beside the line by `slack`; what is shorter is none [m].
     """
     (x, y), (end_x, end_y) = edge
     along_x = end_x - x

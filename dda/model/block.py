@@ -79,13 +79,7 @@ class Block:
         return self.corners[index], self.corners[(index + 1) % n]
 
     def check_edges(self, base: int, top: int) -> None:
-        """Check that base and top are two edges of the block.
-
-        Raises
-        ------
-        ValueError
-            If they are not.
-        """
+        """Raise ValueError unless base and top are two edges of the block."""
         n = len(self.corners)
         for name, edge in (("base", base), ("top", top)):
             if not 0 <= edge < n:

@@ -156,14 +156,8 @@ def inertia_forces(
 ) -> float:
     """Add what a strained block adds to the equations of its strain modes; write (r', e') into `spin`.
 
-    Returns its kinetic energy less that of the modes alone, p' p / 2 [J].
-
-    Parameters
-    ----------
-    p, a
-        dt v and dt^2 a of all modes.
-    poses
-        Strains, J and gamma of the instant.
+    Returns its kinetic energy less that of the modes alone, p' p / 2 [J]. p and a are dt v and dt^2 a of all modes, the
+    poses have strains, J and gamma of the instant.
     """
     first = blocks.first[i]
     root = blocks.root_inertia[i]

@@ -347,10 +347,7 @@ def edge_of(blocks: Blocks, block: int, edge: int) -> tuple[complex, complex]:
 def start_of(model: PlaneModel, scheme: Scheme, march: March, course: Course) -> PlaneState:
     """The state at t = 0: unstrained; a corner that lies behind its edge is pressed by its spring.
 
-    Raises
-    ------
-    ValueError
-        If a corner lies behind an edge that is rigid.
+    Behind an edge that is rigid it is a ValueError.
     """
     plane = march.method
     blocks = plane.blocks

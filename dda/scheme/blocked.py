@@ -135,12 +135,8 @@ def with_all_digits(scheme: Scheme) -> Scheme:
 def _mode(exact: Scheme, w: float, levels: int) -> tuple[Array, tuple[float, float]]:
     """The entries of the maps of one mode, (levels, 6), and (u, p) at step 1, p scaled.
 
-    The momentum is measured in the power of two that makes the off-diagonal entries about equal.
-
-    Parameters
-    ----------
-    exact
-        The scheme of `with_all_digits`.
+    The momentum is measured in the power of two that makes the off-diagonal entries about equal. The scheme is that of
+    `with_all_digits`.
     """
     step, (u, p) = _one_step(exact, w)
     b = step[1].bit_length()

@@ -85,13 +85,7 @@ def system_of(
 
 
 def stepper_of(column: ContactColumn, system: ContactSystem, scheme: Scheme, compiled: Any = None) -> ContactStepper:
-    """The scheme on the column.
-
-    Raises
-    ------
-    ValueError
-        If a contact is rigid and the scheme explicit.
-    """
+    """The scheme on the column; a `ValueError` if a contact is rigid and the scheme explicit."""
     if scheme.explicit and np.any(system.rows.compliance == 0):
         field, value = ("alpha", 0) if scheme.table is None else ("scheme", scheme.name)
         raise ValueError(f"{field}: must be positive where contacts are rigid, got {value}")

@@ -1,7 +1,6 @@
 """Line elements of a layered column: mass and stiffness by scikit-fem, springs where the column is jointed.
 
-Between two joints the displacement is continuous: each such part is a mesh of its own, and the springs join the nodes
-that face each other.
+Each part between two joints is a mesh of its own; the springs join the nodes that face each other.
 """
 
 from __future__ import annotations
@@ -96,13 +95,7 @@ class LineMesh:
 
 
 def line_mesh(ground: Ground, elements: Sequence[int], degree: int, springs: bool = True) -> LineMesh:
-    """Mesh a column by so many elements of each stratum, of degree 1 or 2; without `springs` joints only cut it.
-
-    Raises
-    ------
-    ValueError
-        For another degree.
-    """
+    """Mesh a column by so many elements of each stratum, of degree 1 or 2; without `springs` joints only cut it."""
     require(degree in ELEMENTS, "degree", "must be 1 or 2", degree)
     near = NEAR * ground.height
     heights = sorted(height for height, _ in ground.joints)

@@ -76,12 +76,9 @@ class Ground:
         return np.cumsum([stratum.thickness for stratum in self.strata])
 
     def check_request(self, columns: Sequence[str], heights: Sequence[float], parts: Sequence[str] = PARTS) -> None:
-        """Check columns and heights [m] that are asked for; `parts` is what is known of a height.
+        """Raise a `ValueError` for a column that is not available, or a height [m] that is not in the column.
 
-        Raises
-        ------
-        ValueError
-            For a column that is not available, or a height that is not in the column.
+        `parts` is what is known of a height.
         """
         known = (DISPLACEMENT, PRESSURE, *(f"{part}_{n + 1}" for part in parts for n in range(len(heights))))
         for name in columns:

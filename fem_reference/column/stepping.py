@@ -98,13 +98,7 @@ class Model:
         return [csr_array(matrix[self.free][:, self.free]) for matrix in (self.mesh.M, C, self.mesh.K)]
 
     def check_scheme(self, scheme: Scheme) -> None:
-        """Check that a scheme has a velocity for the dashpot of a half-space.
-
-        Raises
-        ------
-        ValueError
-            If its velocity is that of half a step before.
-        """
+        """Raise a `ValueError` for a half-space and a scheme whose velocity is that of half a step before."""
         has_velocity = not scheme.staggered or self.impedance is None
         require(has_velocity, "scheme", "must have the velocity that a half-space's dashpot needs", scheme.name)
 

@@ -23,7 +23,7 @@ from fem_reference.scheme import stage
 from fem_reference.scheme.stage import Motion
 
 LONG = 50_000
-"""Number of steps from which on a history is stepped in natural modes, compiled: the first time that takes seconds."""
+"""Steps from which on a history is stepped in natural modes, compiled: the first time that takes seconds."""
 PLAIN = ("fall_back", "singly", "only_contact", "step_change", "held_change", "part_of")
 """Functions that no history compiles."""
 APART = (
@@ -41,7 +41,7 @@ MESSAGE_DELAY = 2.0
 """Seconds of compiling before it is said; code that was kept is read in less."""
 logger = logging.getLogger("fem_reference")
 MODES = 2500
-"""Greatest number of unknowns that a long history steps in natural modes: their shapes are a full matrix."""
+"""Most unknowns that a long history steps in natural modes: their shapes are a full matrix."""
 MODULES = (stage, law, iteration, steps_of_march)
 FUNCTIONS = {
     (module.__name__, name): value

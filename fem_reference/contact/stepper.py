@@ -21,12 +21,12 @@ from fem_reference.scheme.stage import Body
 AVERAGE = (0.25, 0.5)
 """Alpha and delta of average acceleration."""
 KEPT = 8
-"""Greatest number of shorter steps whose matrices are kept."""
+"""Most shorter steps whose matrices are kept."""
 DENSE = 256
-"""Greatest number of rows whose responses are kept, eight bytes an unknown each."""
+"""Most rows whose responses are kept, eight bytes an unknown each."""
 SINGLY = 4
 SINGLY_UNIQUE = 100
-"""Greatest number of changes of one point after the other, over the number of points: with friction, and without."""
+"""Most changes of one point after the other, over the number of points: with friction, and without."""
 
 
 class Marched(NamedTuple):
@@ -40,7 +40,7 @@ class Marched(NamedTuple):
 
 @dataclass
 class ContactStepper:
-    """The scheme applied to bodies on contacts, with its factorisations made once for each length of step.
+    """The scheme applied to bodies on contacts.
 
     Raises
     ------
@@ -50,8 +50,8 @@ class ContactStepper:
 
     system: ContactSystem
     scheme: Scheme
-    limit: int = 6  # greatest number of solutions of the open-close iteration [-]
-    single_limit: int | None = None  # then of changes of one point after the other [-]; None: as many as may be needed
+    limit: int = 6  # most solutions of the open-close iteration [-]
+    single_limit: int | None = None  # then changes of one point after the other [-]; None: as many as may be needed
     rule: str = "newmark"  # or ``"implicit"``: the force of the step's end, and average acceleration of the bodies
     energies: bool = False  # whether energies are kept
     losses: bool = False  # whether energies lost are

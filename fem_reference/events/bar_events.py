@@ -63,15 +63,7 @@ class BarMotion:
 
 
 def solve(problem: BarProblem, end: float, limit: int = 10_000, work: Work | None = None) -> BarMotion:
-    """The exact motion of a bar from t = 0 to `end` [s], with at most `limit` switches.
-
-    Raises
-    ------
-    ValueError
-        If `end` is not positive and finite.
-    HorizonError
-        If the motion cannot be followed to its end; see `bars_events.solve`.
-    """
+    """The exact motion of a bar from t = 0 to `end` [s]; arguments and errors are those of `bars_events.solve`."""
     bar = Bar(problem.height, problem.density, problem.young, problem.velocity)
     spring = BarJoint("unilateral", problem.base_stiffness / problem.width, problem.gap)
     one_bar = BarsProblem((bar,), (spring,), problem.gravity, top=constant(problem.pressure))

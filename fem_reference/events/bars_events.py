@@ -182,7 +182,7 @@ def least_terms(problem: BarsProblem, end: float) -> float:
 def solve(
     problem: BarsProblem, end: float, digits: int = DIGITS, limit: int = 10_000, work: Work | None = None
 ) -> BarsMotion:
-    """The exact motion of bars from t = 0 to `end` [s]; `work` counts the terms of its series, and bounds them.
+    """The exact motion of bars from t = 0 to `end` [s], of at most `limit` switches; `work` bounds terms of series.
 
     Parameters
     ----------
@@ -194,12 +194,8 @@ def solve(
     ------
     ValueError
         If `end` is not positive and finite or `digits` is below 30.
-    TooManySwitchesError
-        If there are more switches than `limit`.
-    LostDigitsError
-        If waves and switches amplify rounding until computations differ in every number of digits.
-    TooMuchWorkError
-        If the motion takes more work than is allowed.
+    TooManySwitchesError, LostDigitsError, TooMuchWorkError
+        If the motion cannot be followed to its end, as `switches` has it.
 
     Examples
     --------

@@ -8,9 +8,8 @@ at rest when a pressure is switched on lifts off at once, since its base acceler
 that closes slips at once where p_s |s'| > tan(phi) p |w'|, unless it has cohesion. What opens with a shear force T
 releases the energy T^2 / (2 p_s) of its spring.
 
-With dashpots, or with an impact law on rigid contact, the laws of `block_model` hold, and the same proof does: a
-dashpot changes the matrices and what is watched, an impact the rates. Impacts that accumulate are named in `cascades`,
-with the instant at which the contact comes to rest enclosed (`block_impacts`).
+A dashpot changes the matrices and what is watched, an impact on rigid contact the rates; the same proof holds. Impacts
+that accumulate are named in `cascades`, with the instant at which the contact comes to rest enclosed (`block_impacts`).
 """
 
 from __future__ import annotations
@@ -181,7 +180,7 @@ def base_motion(node: Node, time: arb) -> tuple[arb_mat, arb_mat]:
 
 
 def solve(problem: BlockProblem, end: float, digits: int = DIGITS, limit: int = 100_000) -> BlockMotion:
-    """The exact motion of a block from t = 0 to `end` [s].
+    """The exact motion of a block from t = 0 to `end` [s], of at most `limit` switches.
 
     Parameters
     ----------
@@ -193,16 +192,8 @@ def solve(problem: BlockProblem, end: float, digits: int = DIGITS, limit: int = 
     ------
     ValueError
         If `end` is not positive and finite or `digits` is below 30.
-    TooManySwitchesError
-        If there are more switches than `limit`.
-    TooMuchWorkError
-        If the motion takes more steps than are allowed; the contact oscillates too fast for its length.
-    LostDigitsError
-        If switches amplify what the motion may be off until nothing can be decided.
-    AccumulationError
-        If impacts follow each other ever faster, and that they accumulate is not proven.
-    NoContactStateError
-        If no state of the corners agrees with the motion that follows from it.
+    TooManySwitchesError, TooMuchWorkError, LostDigitsError, AccumulationError, NoContactStateError
+        If the motion cannot be followed to its end, as `switches` has it.
     """
 
     def motion_in(digits: int) -> BlockMotion:

@@ -31,7 +31,7 @@ from fem_reference.events.switches import (
 from fem_reference.problem.motion import Motion
 from fem_reference.problem.problem import Array
 
-# Greatest number of steps of `ANGLE` radians; as many of a block at rest on p = 1e18 N/m took 18 s and 90 MB.
+# Most steps of `ANGLE` radians; as many of a block at rest on p = 1e18 N/m took 18 s and 90 MB.
 STEPS = 60_000
 IDLE = 500  # steps without a switch after which a motion that would take too many steps is given up
 TAIL_BITS = 0.3  # part of the working bits to which hops are followed before the rest of them is enclosed at once
@@ -192,12 +192,7 @@ class BlockMarch(March):
     def _rest_after(self, hops: Hops, rest: Accumulation, state: State, time: arb) -> None:
         """Take the state in which the impacts that are left accumulate, and let the contact rest.
 
-        Parameters
-        ----------
-        state
-            The state after the last impact that was followed, at the present midpoint of its instant.
-        time
-            That instant [s].
+        `state` is that after the last impact that was followed, at the midpoint of its instant, `time` [s].
         """
         error = self.transport.record()
         error[:12] += [float(rest.reach * x) * INFLATION for part in hops.units for x in part.entries()]

@@ -215,7 +215,7 @@ def least_terms(problem: ColumnProblem, end: float) -> tuple[float, float]:
 def solve(
     problem: ColumnProblem, end: float, digits: int = DIGITS, limit: int = 100_000, work: Work | None = None
 ) -> ColumnMotion:
-    """The exact motion of a column from t = 0 to `end` [s]; `work` counts the terms of its series, and bounds them.
+    """The exact motion of a column from t = 0 to `end` [s], of at most `limit` switches; `work` bounds terms of series.
 
     Parameters
     ----------
@@ -227,14 +227,8 @@ def solve(
     ------
     ValueError
         If `end` is not positive and finite or `digits` is below 30.
-    TooManySwitchesError
-        If there are more switches than `limit`.
-    TooMuchWorkError
-        If the motion takes more work than is allowed.
-    LostDigitsError
-        If switches amplify what the motion may be off until nothing can be decided.
-    NoContactStateError
-        If no state of the joints agrees with the motion that follows from it.
+    TooManySwitchesError, TooMuchWorkError, LostDigitsError, NoContactStateError
+        If the motion cannot be followed to its end, as `switches` has it.
     """
     counted = work or Work()
 

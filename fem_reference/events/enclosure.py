@@ -42,13 +42,7 @@ def bits_of(digits: float) -> int:
 
 
 def check_request(end: float, digits: int) -> None:
-    """Raise for a last instant or a number of digits that no motion is computed for.
-
-    Raises
-    ------
-    ValueError
-        If `end` is not positive and finite, or `digits` is below `LEAST_DIGITS`.
-    """
+    """Raise a `ValueError` if `end` is not positive and finite, or `digits` is below `LEAST_DIGITS`."""
     if not (math.isfinite(end) and end > 0):
         raise ValueError(f"end: must be positive and finite, got {end!r}")
     if digits < LEAST_DIGITS:

@@ -211,13 +211,7 @@ class ExponentialSum:
         return None
 
     def count_terms(self) -> None:
-        """Count the products of which the power series is made.
-
-        Raises
-        ------
-        TooMuchWorkError
-            If the motion takes more than it is allowed.
-        """
+        """Count the products of which the power series is made, as work."""
         self.rates.work.add(ORDER * sum(Q.length() for Q in self.terms.values()))
 
     def series(self) -> list[arb]:

@@ -4,11 +4,10 @@ The centre of the motion is computed without radii; how far it may be off is a s
 
 **Switches.** Between two of them the motion is linear, and its Taylor series is summed in balls (`series`). The next
 switch is the first instant at which a gap or a normal force falls through zero, the shear force of a contact that
-sticks reaches its limit, or the reference of one that slips comes to rest (`contacts`). That it is the first is proven:
-up to it Bernstein's form of each of these functions, or Taylor's formula with a bound on the third derivative, is
-positive (`watching`), and the interval Newton operator proves that one root lies in the ball of its instant. What
-switches in one ball switches together. Where a function comes so near to zero that a crossing is neither proven nor
-excluded, its instant is in `touches`.
+sticks reaches its limit, or the reference of one that slips comes to rest (`contacts`). That it is the first is proven
+(`watching`), and that one root lies in the ball of its instant (`enclosure`). What switches in one ball switches
+together. Where a function comes so near to zero that a crossing is neither proven nor excluded, its instant is in
+`touches`.
 
 **Settling.** At an instant some watched functions are zero, and go the way of their first derivative that is not. What
 the state of a contact changes in the motion begins two derivatives above that in which its own function moves. So the
@@ -101,13 +100,7 @@ class March:
         return float(self.start.time)
 
     def run(self) -> None:
-        """Find the motion.
-
-        Raises
-        ------
-        HorizonError, NoContactStateError
-            If it cannot go on.
-        """
+        """Find the motion; raises a `HorizonError` or `NoContactStateError` where it cannot go on."""
         self.take_drives(0.0)
         start, self.states = self.initial()
         self.start = start
@@ -248,19 +241,14 @@ class March:
     # ---- settling ----
 
     def settle(self, zeros: Mapping[tuple[int, int], int], recording: bool = True) -> None:
-        """Let the contacts take the states that agree with the motion from now on.
+        """Let the contacts take the states that agree with the motion from now on, or raise `NoContactStateError`.
+
+        The changes are switches if `recording`, which they are not at t = 0.
 
         Parameters
         ----------
         zeros
             Of contact and side of a watched function how many derivatives of displacements are zero in it.
-        recording
-            Whether changes are switches; they are not at t = 0.
-
-        Raises
-        ------
-        NoContactStateError
-            If no states agree.
         """
         model = self.model
         was = self.states

@@ -98,21 +98,9 @@ Motion = TypeVar("Motion", bound=ProvenMotion)
 
 
 def with_enough_digits(motion_in: Callable[[int], Motion], end: float, digits: int) -> Motion:
-    """The motion to an `end` [s] in as many digits as it needs.
+    """The motion to an `end` [s], first in `digits`, then in as many as it needs, up to `MOST_DIGITS`.
 
-    Parameters
-    ----------
-    motion_in
-        From decimal digits to the motion in them, which are those of the context.
-    digits
-        The digits of the first computation; more are taken time after time, up to `MOST_DIGITS`.
-
-    Raises
-    ------
-    ValueError
-        If `end` is not positive and finite, or the digits are too few.
-    LostDigitsError
-        If the most digits do not do.
+    `motion_in` is called in the precision of the digits that it gets. Raises `LostDigitsError` if the most do not do.
     """
     check_request(end, digits)
     promised = PROMISED * end

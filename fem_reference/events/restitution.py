@@ -102,11 +102,6 @@ def branches(scheme: ContactScheme, omega: float) -> tuple[Branch, ...]:
 
     The state is a straight line in theta as long as contact lasts; where the predictor changes its sign within
     an interval of theta, the interval is cut.
-
-    Raises
-    ------
-    ValueError
-        If `omega` is not positive.
     """
     step = scheme.step(omega)
     last = np.array([0.0, scheme.gg, 1 - scheme.delta])  # the velocity after a first step without contact
@@ -131,13 +126,7 @@ def branches(scheme: ContactScheme, omega: float) -> tuple[Branch, ...]:
 
 
 def statistics(scheme: ContactScheme, omega: float) -> Statistics:
-    """Mean, range and mean square of the restitution, each line integrated exactly.
-
-    Raises
-    ------
-    ValueError
-        If `omega` is not positive.
-    """
+    """Mean, range and mean square of the restitution, each line integrated exactly."""
     lines = branches(scheme, omega)
     ends = [((line.high - line.low) / scheme.gg, line(line.low), line(line.high)) for line in lines]
     values = [e for _, first, last in ends for e in (first, last)]

@@ -130,10 +130,7 @@ class System:
     def growth(self, states: States, radii: Array, passed: float) -> Array:
         """How far the unknowns may be off after a time [s] in which the contacts keep their states.
 
-        Parameters
-        ----------
-        radii
-            What unknowns, rates and references may be off before.
+        `radii` are those of unknowns, rates and references before.
         """
         n = self.size
         bounds = self.bounds_of(states)
@@ -299,14 +296,9 @@ def step_length(system: System, states: States, drives: Sequence[Piece]) -> floa
 def expand(
     system: System, states: States, start: Start, drives: Sequence[Piece], length: float, count: int | None = None
 ) -> Segment:
-    """The series of a step.
+    """The series of a step of a length [s].
 
-    Parameters
-    ----------
-    length
-        Of the step [s].
-    count
-        Terms, two at least; None: as many as the digits need, with a tail that bounds those that follow.
+    It has `count` terms, two at least; None: as many as the digits need, and a tail that bounds those that follow.
     """
     full = count is None
     angle = 0.0

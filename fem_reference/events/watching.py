@@ -93,10 +93,7 @@ class Watched(NamedTuple):
     ) -> tuple[Fall, Watch] | None:
         """The first fall of some functions between two shares of the step, and which function falls.
 
-        Raises
-        ------
-        LostDigitsError
-            If what the motion may be off hides a function, or it stays too near to zero for too long.
+        Raises `LostDigitsError` if what the motion may be off hides one, or it stays too near to zero for too long.
         """
         first = None
         begin = arb(low)
@@ -133,18 +130,9 @@ class Watched(NamedTuple):
 def first_doubt(terms: Array, margin: Array) -> tuple[float, float, list[int]]:
     """Where Bernstein's forms prove polynomials on [0, 1] to be positive.
 
-    Parameters
-    ----------
-    terms
-        Coefficients of their powers, shape (functions, `FLOAT_TERMS`).
-    margin
-        What each may be wrong by, shape (functions,).
-
-    Returns
-    -------
-    share, width, doubtful
-        The end of the part throughout which all are positive; the length of the next part, in which that cannot be
-        proven, 0 where there is none; and the numbers of the functions that may fall in or after it.
+    `terms` are coefficients of their powers, shape (functions, `FLOAT_TERMS`), `margin` what each may be wrong by.
+    Returns the end of the part throughout which all are positive; the length of the next part, in which that cannot be
+    proven, 0 where there is none; and the numbers of the functions that may fall in or after it.
     """
     forms = (terms @ bernstein(FIRST_CELLS)).min(axis=1)
     doubtful = np.flatnonzero(~(forms > margin))

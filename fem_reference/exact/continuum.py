@@ -34,12 +34,10 @@ HUGE = 1e100
 
 
 def histories(times: Array, kappa: float, rate: float, columns: tuple[str, ...]) -> Array:
-    """Histories over their static values, shape (columns, times).
+    """Histories over their static values, shape (columns, times), at increasing times in travel times.
 
     Parameters
     ----------
-    times
-        Instants in travel times, increasing, shape (times,).
     kappa
         Stiffness of the spring over that of the bar, k h / (E W).
     rate

@@ -52,14 +52,7 @@ CHUNK = 2**22
 
 
 def history(waves: Waves, first: float, times: Array, kappa: float, a: float) -> Array:
-    """History of the damped bar by kappa, the spring's stiffness over that of the bar, and a, shape (times,).
-
-    Parameters
-    ----------
-    waves, first
-        Those of the undamped bar, and the arrival of the first one.
-    times
-        Instants in travel times.
+    """History of the damped bar from the waves of the undamped one, of which one arrives `first`, shape (times,).
 
     Raises
     ------

@@ -169,12 +169,8 @@ def _stretch(x: Array) -> Array:
 def _stepped(bar: OpeningBar, scheme: Scheme, loaded: Array, free: Array) -> dict[str, Array]:
     """Columns of the history from step 0 on, the displacement being that of the rigid motion.
 
-    Parameters
-    ----------
-    loaded
-        Weights of the base's own pressure [m/Pa], shape (steps + 1,).
-    free
-        What the load alone does to the base beyond the rigid motion [m], shape (steps + 1,).
+    `loaded` are the weights of the base's own pressure [m/Pa], `free` is what the load alone does to the base beyond
+    the rigid motion [m], each of shape (steps + 1,).
     """
     count = len(loaded)
     dt = scheme.step

@@ -34,7 +34,7 @@ ACCURACY = 1e-13
 STILL = 1e-9
 """Rate below which the block has come to rest, over p."""
 SWINGS = 10_000
-"""Greatest number of swings."""
+"""Most swings."""
 FALLEN = math.pi / 2
 """Rotation at which the block lies on its side and the motion ends [rad]."""
 

@@ -51,10 +51,7 @@ def make_mesh(points: np.ndarray, cells: np.ndarray) -> Any:
 class Elements:
     """M D'' + K D = F + pushes y of elements, y the displacement of the base, and the rows that observe D.
 
-    Parameters
-    ----------
-    points, cells
-        Nodes [m], shape (nodes, 2), and cells, their corners counter-clockwise.
+    Nodes have the shape (nodes, 2) [m], cells their corners counter-clockwise.
     """
 
     K: Any

@@ -33,7 +33,7 @@ CANCELLED = 1e-11
 """Rounding of a column, over its maximum, beyond which it must be stepped."""
 FEWEST = 8
 LARGEST = 400
-"""Least and greatest number of vectors."""
+"""Least and most vectors."""
 SLOW = 0.1
 """kappa below which 1 - tau is formed again where digits count."""
 PAID = 4
@@ -50,14 +50,9 @@ class Reduced:
 
 
 def reduced(stepper: Stepper, rows: Array, steps: int) -> Reduced | str:
-    """History in the smallest sufficient space, or why there is none, in words.
+    """History under a constant load in the smallest sufficient space, or why there is none, in words.
 
-    Parameters
-    ----------
-    stepper
-        The block under a constant load.
-    rows
-        Of the columns, shape (columns, unknowns).
+    The columns are observed by `rows`, shape (columns, unknowns).
     """
     if reason := applicable(stepper.scheme):
         return reason

@@ -27,7 +27,7 @@ class Unilateral:
     gap: float = 0.0  # g0 under the whole base at t = 0 [m], at least 0
     velocity: float = 0.0  # at t = 0 [m/s], upwards positive
     shear: str = "frictionless"  # or "glued": shear springs of the problem's shear stiffness hold closed points
-    limit: int = 6  # greatest number of solutions of the open-close iteration before its fallback [-]
+    limit: int = 6  # most solutions of the open-close iteration before its fallback [-]
     cut: float = 0.3  # factor on a step whose contact has no solution [-], between 0 and 1
     rule: str = "newmark"  # or "implicit": the contact force of the step's end, under average acceleration
     shortest: float = 0.01  # shortest step over the scheme's own [-], above 0 and at most 1

@@ -230,26 +230,14 @@ def components(basis: Basis) -> Array:
 
 
 def point_values(basis: Basis, point: Array) -> tuple[Array, Array, Array]:
-    """Rows that give u, v and the rotation (dv/dx - du/dy) / 2 at a point of the mesh, each (unknowns,).
-
-    Raises
-    ------
-    ValueError
-        If the point lies outside the mesh.
-    """
+    """Rows that give u, v and the rotation (dv/dx - du/dy) / 2 at a point of the mesh, each (unknowns,)."""
     rule = _cells_at(basis, point)
     u, v = values(basis, _first(rule))
     return u.toarray()[0], v.toarray()[0], _rotation(basis, rule)
 
 
 def point_rule(basis: Basis, point: Array) -> Rule:
-    """Unit weight at a point of the mesh.
-
-    Raises
-    ------
-    ValueError
-        If the point lies outside the mesh.
-    """
+    """Unit weight at a point of the mesh; a `ValueError` for a point outside of it."""
     return _first(_cells_at(basis, point))
 
 

@@ -19,7 +19,7 @@ from fem_reference.problem.checks import require
 from fem_reference.problem.problem import Array, Problem
 
 FRAMES = 200
-"""Greatest number of steps written."""
+"""Most steps written."""
 SUFFIXES = (".xdmf", ".vtu")
 
 
@@ -62,13 +62,7 @@ def frames_of(path: Path, steps: int) -> list[int]:
 
 
 def write_fields(problem: Problem, model: Model, path: Path, frames: Mapping[float, Array]) -> None:
-    """Write displacement (points) and stress (cells), data inline.
-
-    Parameters
-    ----------
-    frames
-        Displacement of the model's unknowns under its load of unit size at instants.
-    """
+    """Write displacement (points) and stress (cells), data inline, by displacements under the unit load at instants."""
     meshio = files.library()
     mesh = block_mesh(problem).mesh
     basis = elasticity.vector_basis(mesh, problem.degree)

@@ -143,13 +143,7 @@ class ColumnLine:
 
 
 def line_of(problem: Problem) -> ColumnLine:
-    """One column of elements of an upright rectangle.
-
-    Raises
-    ------
-    ValueError
-        If the block is not an upright rectangle.
-    """
+    """One column of elements of an upright rectangle; a `ValueError` for another block."""
     width, height = problem.rectangle or (0.0, 0.0)
     require(width > 0, "vertices", "must be an upright rectangle for one column", problem.vertices)
     mesh = MeshLine(height * np.arange(problem.elements + 1) / problem.elements)

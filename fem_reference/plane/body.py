@@ -75,13 +75,7 @@ class PlaneBody(Elastic):
 
 
 def mesh_of(body: PlaneBody) -> Mesh:
-    """The mesh of a body.
-
-    Raises
-    ------
-    ValueError
-        Its file cannot be read.
-    """
+    """The mesh of a body; a `ValueError` if its file cannot be read."""
     if body.mesh is not None:
         return read_mesh(body.mesh) if isinstance(body.mesh, str) else body.mesh
     return _tensor_mesh(body) if body.rectangle else _fan_mesh(body)

@@ -78,12 +78,7 @@ class ContactPoints(NamedTuple):
 
 
 def points_of(contacts: Sequence[PatchContact], bodies: Sequence[BodyElements], first: Sequence[int]) -> ContactPoints:
-    """The points of contacts.
-
-    Parameters
-    ----------
-    bodies, first
-        The bodies, and the number of the first unknown of each; at the end the number of all.
+    """The points of contacts of bodies; `first` are the numbers of their first unknowns, and that of all at the end.
 
     Raises
     ------

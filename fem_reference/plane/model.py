@@ -39,7 +39,7 @@ from fem_reference.scheme.stage import Motion
 SHIFT = 1e-3  # of the square of the lowest frequency of a shear wave: keeps K + shift M definite where a body is free
 UNBALANCED = 1e-9  # of the sum of the loads' sizes: what rounding leaves of a balanced load
 UNHELD = 1e-9  # of the stiffest rigid motion on its springs: a motion below its square is held by none
-REST_SOLVES = 50  # greatest number of sets of closed points that are tried for a rest
+REST_SOLVES = 50  # most sets of closed points that are tried for a rest
 CUT = Cut(0.3, 0.01)  # of a step whose contact has no solution, as of a block
 
 
@@ -77,8 +77,6 @@ class PlaneModel:
     ----------
     bodies
         Their unknowns come one body after the other.
-    contacts
-        Springs over patches of their outlines.
     base_motion
         Of what is fixed below the contacts, zero at t = 0.
 
@@ -103,13 +101,7 @@ class PlaneModel:
         self.base_motion = base_motion
 
     def observer(self, start: Point, end: Point, body: int = 0) -> Array:
-        """The rows of `BodyElements.observer` of a body.
-
-        Raises
-        ------
-        ValueError
-            Nothing lies there.
-        """
+        """The rows of `BodyElements.observer` of a body."""
         return self.rows(self.parts[body].observer(start, end), body)
 
     def means(self, body: int) -> Array:
@@ -194,7 +186,7 @@ class PlaneModel:
         settled
             Whether they begin at `rest`.
         limit
-            Greatest number of solutions of the open-close iteration before its fallback.
+            Most solutions of the open-close iteration before its fallback.
         """
         began = time.perf_counter()
         system, compiled, notes = compilation.prepared(self._system(scheme, rows), steps)

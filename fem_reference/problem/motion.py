@@ -43,10 +43,7 @@ class Motion:
 def moved_base(motion: Motion | None, positions: Array, times: Array) -> Array:
     """Displacement of a base in x and y at the ends of the stages, shape (steps, stages, 2) [m]; zero without motion.
 
-    Parameters
-    ----------
-    positions, times
-        Of the steps [steps], and of the ends of their stages [s], shape (steps, stages).
+    These are given by the positions of the steps [steps] and by times [s], shape (steps, stages).
     """
     if motion is None:
         return np.zeros((*times.shape, 2))

@@ -34,14 +34,9 @@ class Result:
 
 
 def just_ended(step: float, rows: int, began: float, ready: float) -> dict[str, Any]:
-    """The instants and the times of a history that has just ended, as fields of its result.
+    """The instants and the times of a history of so many rows that has just ended, as fields of its result.
 
-    Parameters
-    ----------
-    step, rows
-        Of the scheme [s], and number of steps that were reached.
-    began, ready
-        When its model was begun, and its first step [s].
+    The `step` is that of the scheme; its model was `began`, and `ready` for its first step, at instants [s].
     """
     return {
         "time": step * np.arange(1, rows + 1),

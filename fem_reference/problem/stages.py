@@ -38,12 +38,12 @@ class Stage(NamedTuple):
 
     @property
     def stiffness_weight(self) -> float:
-        """beta' = beta (1 - af) / (1 - am) of the stage's matrix S = M + gamma' dt C + beta' dt^2 K."""  # noqa: D403
+        """Of K in the stage's matrix S = M + gamma' dt C + beta' dt^2 K: beta' = beta (1 - af) / (1 - am)."""
         return self.compliance * (1 - self.af)
 
     @property
     def damping_weight(self) -> float:
-        """gamma' = gamma (1 - af) / (1 - am) of the stage's matrix."""  # noqa: D403
+        """Of C there: gamma' = gamma (1 - af) / (1 - am)."""
         return self.gamma / (1 - self.am) * (1 - self.af)
 
 

@@ -137,7 +137,7 @@ def weighted_response(omega: Array, weights: Array, scheme: Scheme, steps: int) 
 
 
 def affine_step(scheme: Scheme, bodies: Sequence[Body], load: Array) -> tuple[Extended, Array]:
-    """Map of one step of modes in lengths of dt, and where they begin.
+    """Map of one step of modes on (x, v, a, 1) in lengths of dt, (modes, 4, 4), and that state at t = 0, (modes, 4).
 
     Parameters
     ----------
@@ -145,11 +145,6 @@ def affine_step(scheme: Scheme, bodies: Sequence[Body], load: Array) -> tuple[Ex
         The modes in each stage, in extended precision.
     load
         Load of each mode, shape (modes,).
-
-    Returns
-    -------
-    tuple
-        Map of (x, v, a, 1), shape (modes, 4, 4), and that state at t = 0, shape (modes, 4).
     """
     units = np.eye(4)[:, :, None] * np.ones_like(load)
     x, v, a, acting = units  # of each unit state, shape (4, modes)

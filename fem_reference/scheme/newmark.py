@@ -25,10 +25,7 @@ class Work:
     def factor(self, matrix: csr_array) -> Callable[[Array], Array]:
         """Factorise a symmetric positive definite matrix; return the counted solver of right-hand sides.
 
-        Raises
-        ------
-        FloatingPointError
-            If rounding has made it singular.
+        Raises a `FloatingPointError` if rounding has made it singular.
         """
         # Positive definite: pivots on the diagonal are safe and keep the symmetric fill-in.
         options = {"SymmetricMode": True}
@@ -128,8 +125,6 @@ class Stepper:
 
         Parameters
         ----------
-        state
-            At its start.
         loads
             At its start and at the end of each stage, where they are not the constant one.
         gg

@@ -110,12 +110,7 @@ def mean_load(stage: Stage, first: Any, last: Any) -> Any:
 def step_change(scheme: Any, gg: float, h: float, bodies: Any, start: Motion, loads: Any) -> Motion:
     """The end of a step as a change of the displacement, under the loads at its start and at the stages' ends.
 
-    Parameters
-    ----------
-    scheme : Scheme
-        Whose stages are made.
-    bodies : sequence of Body
-        One for each stage.
+    Each stage has a body of its own.
     """
     before = start
     for stage, body, load in zip(scheme.stages, bodies, loads[1:], strict=True):
