@@ -180,7 +180,6 @@ class Equations:
 
     @cached_property
     def _factor(self) -> Callable[[Array], Array]:
-        """The solver of `saddle`."""
         return factor(self.saddle, definite=False)
 
     def at_rest(self, F: Array, g: Array) -> ArrayPair:

@@ -205,8 +205,8 @@ def solve_unilateral(
 ) -> AnyResult:
     """Step blocks on contact that opens, from rest or from their starting velocity.
 
-    Displacements and rotation count from t = 0; strains of a block that turns are those along axes that turn with it.
-    A numerical failure is an outcome, not an exception: the history then ends with the last step that was reached.
+    Displacements and rotation count from t = 0; strains of a block that turns are those along axes that turn with it. A
+    numerical failure is an outcome: the history then ends with the last step that was reached.
 
     Parameters
     ----------

@@ -35,7 +35,6 @@ class Block:
     material: Material
 
     def __post_init__(self) -> None:
-        """Check the polygon and freeze its corners."""
         object.__setattr__(self, "vertices", checked_polygon(self.vertices))
 
     @classmethod

@@ -73,8 +73,8 @@ def solve_plane(
 ) -> PlaneResult:
     """Step blocks in the plane.
 
-    A numerical failure is an outcome, not an exception: the history then ends with the last step that was reached. A
-    step whose contacts have no single state is repeated, shorter.
+    A numerical failure is an outcome: the history then ends with the last step that was reached. A step whose contacts
+    have no single state is repeated, shorter.
 
     Parameters
     ----------

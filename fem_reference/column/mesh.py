@@ -117,7 +117,6 @@ def line_mesh(ground: Ground, elements: Sequence[int], degree: int, springs: boo
 
 
 def _joined(ground: Ground, parts: list[Part], springs: bool) -> LineMesh:
-    """Put the parts together, with the springs between them."""
     size = parts[-1].first + parts[-1].size
     base = parts[0].end(top=False)
     ordered = [stiffness for _, stiffness in sorted(ground.joints)]
@@ -138,7 +137,6 @@ def _joined(ground: Ground, parts: list[Part], springs: bool) -> LineMesh:
 
 
 def _springs(faces: Sequence[tuple[int, int]], stiffness: Sequence[float], size: int) -> csr_array:
-    """Matrix of springs between pairs of unknowns."""
     i, j = np.array(faces, dtype=int).reshape(-1, 2).T
     k = np.array(stiffness, float)
     places = np.concatenate([i, j, i, j]), np.concatenate([i, j, j, i])

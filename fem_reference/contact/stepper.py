@@ -137,7 +137,7 @@ class ContactStepper:
         )
 
     def march(self, state: ContactState, record: Record, ratio: float = 1.0) -> Marched:
-        """Make as many steps as the record has rows, of a `ratio` of the scheme's own length, and fill their rows."""
+        """As `march`, for steps of a `ratio` of the scheme's own length."""
         stages = self._stages(ratio)
         steps = len(record.solves)
         positions = state.position + ratio * np.arange(float(steps))
@@ -164,7 +164,6 @@ class ContactStepper:
         return 1 / matrix if self.system.to_modes is not None else Operator(self.work.factor(matrix))
 
     def _stages(self, ratio: float) -> tuple[ContactStage, ...]:
-        """The stages of a step of a ratio of the scheme's own length."""
         if ratio in self._lengths:
             return self._lengths[ratio]
         if len(self._lengths) > KEPT:

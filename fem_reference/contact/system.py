@@ -17,14 +17,14 @@ from fem_reference.scheme.stage import Motion
 
 
 class ContactRows(NamedTuple):
-    """What rows obey (`fem_reference.contact.law`), each of shape (rows,)."""
+    """What rows obey: the numbers of a `fem_reference.contact.law.Law` that no scheme changes."""
 
-    compliance: Array  # 1 / k [m/N]
-    lower: Array  # bounds of the force but for friction [N]
+    compliance: Array
+    lower: Array
     upper: Array
-    friction: Array  # tangent of the angle [-]
-    partner: Indices  # row that presses this one; its own number where there is none
-    slips: Flags  # whether it slips at its bounds, and does not open
+    friction: Array
+    partner: Indices
+    slips: Flags
 
 
 def opening_rows(compliance: Array) -> ContactRows:

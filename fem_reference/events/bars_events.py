@@ -236,7 +236,6 @@ def _agree_until(motion: BarsMotion, finer: BarsMotion) -> float | None:
 
 
 def _solved(problem: BarsProblem, end: float, digits: int, limit: int, work: Work) -> BarsMotion:
-    """The motion in so many digits."""
     with precision(bits_of(digits)):
         nodes, up, down = nodes_of(problem, end, work)
         joints = [node for node in nodes if isinstance(node, Joint)]

@@ -3,10 +3,9 @@
 What a closed corner bears is told in `block_model`, how it gets from switch to switch, and what is proven of each, in
 `march`.
 
-A corner at zero gap goes the way of the first derivative of its gap that is not zero: a block that touches
-at rest when a pressure is switched on lifts off at once, since its base accelerates upwards. In the same way a corner
-that closes slips at once where p_s |s'| > tan(phi) p |w'|, unless it has cohesion. What opens with a shear force T
-releases the energy T^2 / (2 p_s) of its spring.
+By the settling of `march` a block that touches at rest when a pressure is switched on lifts off at once, since its base
+accelerates upwards, and a corner that closes slips at once where p_s |s'| > tan(phi) p |w'|, unless it has cohesion.
+What opens with a shear force T releases the energy T^2 / (2 p_s) of its spring.
 
 A dashpot changes the matrices and what is watched, an impact on rigid contact the rates; the same proof holds. Impacts
 that accumulate are named in `cascades`, with the instant at which the contact comes to rest enclosed (`block_impacts`).
@@ -88,7 +87,6 @@ class BlockMotion(ProvenMotion):
         return BlockHistory(**self.columns(self.model, times, REPORT_DIGITS))
 
     def _at(self, instant: Instant) -> dict[str, Any]:
-        """All columns but the time at an instant."""
         problem = self.problem
         model = self.model
         node = instant.node

@@ -117,7 +117,6 @@ class BlockMarch(March):
             self._follow_hops(contact)
 
     def _add_impact(self, contact: RigidContact, approach: arb) -> None:
-        """Record an impact at this instant."""
         self.impacts.append(Impact(self.now, float(approach), float(contact.impulse(approach))))
         self.last_switch = len(self.nodes)
 

@@ -16,10 +16,9 @@ one that slips has T = sigma (tan(phi) N + C), with sigma against the direction 
 r = s + T / p_s.
 
 **Dashpots.** A corner with a dashpot c beside its spring presses with N = max(0, -(p w + c w')) while w < 0, and with
-nothing above. So the force jumps to -c w' as the gap closes, and it reaches zero on the way back while w is still
-negative: the spring has not come back, and from there on the corner is *released*. A released corner carries nothing.
-It presses again if p w + c w' falls to zero, which is at the rate w' = -p w / c > 0 and not at w' = 0, and it
-is open once its gap is positive.
+nothing above. So the force jumps to -c w' as the gap closes, and reaches zero on the way back while w is still
+negative: from there on the corner is *released*, and carries nothing. It presses again if p w + c w' falls to zero, at
+the rate w' = -p w / c > 0, and is open once its gap is positive.
 
 **Rigid contact** (p infinite) has an impact law: a gap of both corners that closes at the rate w' < 0 has the rate
 -e w' right after. The impulse of both corners together is::
@@ -193,14 +192,14 @@ class BlockModel(System):
         ]
 
     def watches(self, states: States, references: Sequence[arb]) -> Iterable[Watch]:
-        """Yield the functions that are positive as long as the corners keep their states."""
+        """As of `System`; both corners of a rigid contact have one function."""
         if self.contact is None:
             return () if self.locked else super().watches(states, references)
         row, becomes, order = (0, STICKS, 0) if states[0] == OPEN else (4, OPEN, 2)
         return [Watch(0, NORMAL, (Part(row, arb(1)),), becomes, order=order)]
 
     def changed(self, states: States, watch: Watch) -> States:
-        """The states after a fall of a function; both corners of a rigid contact are one."""
+        """As of `System`; both corners of a rigid contact are one."""
         return super().changed(states, watch) if self.contact is None else (watch.becomes,) * 2
 
     def energy(self, states: States, start: Start) -> arb:

@@ -2,9 +2,8 @@
 
 How it gets from switch to switch, and what is proven of each, is told in `march`.
 
-A joint at zero gap, or a shear force at its strength, goes the way of the first derivative that is not zero: in a
-stack that touches at rest when its weight is switched on, joint j closes in the derivative 2 j + 2. Joints whose gap
-is zero in all derivatives, as those of blocks in common flight, carry no force; they are in `resting`.
+By its settling joint j of a stack that touches at rest when its weight is switched on closes in the derivative 2 j + 2.
+Joints whose gap is zero in all derivatives, as those of blocks in common flight, carry no force; they are in `resting`.
 """
 
 from __future__ import annotations

@@ -109,7 +109,6 @@ class ExponentialSum:
         return self + ExponentialSum.polynomial(self.rates, [*coefficients])
 
     def __bool__(self) -> bool:
-        """Whether any term is left."""
         return any(Q.length() for Q in self.terms.values())
 
     def __call__(self, s: arb) -> arb:

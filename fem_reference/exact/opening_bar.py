@@ -142,9 +142,9 @@ def _image(scheme: Scheme, travel: float, z: Array) -> tuple[Array, Array]:
 
 
 def closed_forms(x2: Array) -> tuple[Array, Array, Array]:
-    """(x coth x - 1) / x^2, (x / sinh x - 1) / x^2 and (x / (2 sinh(x/2)) - 1) / x^2 of complex x^2.
+    """The three closed forms above, of complex x^2.
 
-    All three are even in x and regular at zero. Since 1 / sinh x = coth(x/2) - coth x, the first one, S, is enough::
+    All are even in x and regular at zero. Since 1 / sinh x = coth(x/2) - coth x, the first one, S, is enough::
 
         (x / sinh x - 1) / x^2 = S(x/2) / 2 - S(x)
     """

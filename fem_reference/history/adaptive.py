@@ -48,7 +48,7 @@ class AdaptiveDiscount:
         self.losses: list[float] = []
 
     def __call__(self, state: Motion) -> float:
-        """The discount of the step that begins with a state."""
+        """Discount of the step that begins with a state."""
         energy = float(state.V @ (self.M @ state.V)) / 2
         gg = max(self.floor, math.sqrt(energy / self.before)) if energy < self.before else 1.0
         self.before = energy

@@ -20,9 +20,9 @@ from fem_reference.problem.problem import Array, Indices, Problem
 class TaggedMesh:
     """A mesh and the facets of its base and top."""
 
-    mesh: Mesh  # coordinates relative to the start of the base [m]
-    base: Indices  # facets of the base
-    top: Indices  # facets of the top
+    mesh: Mesh  # [m]
+    base: Indices
+    top: Indices
 
 
 def block_mesh(problem: Problem) -> TaggedMesh:

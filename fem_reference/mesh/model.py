@@ -59,11 +59,11 @@ class Model:
 class Assembled:
     """Matrices of the block in the scikit-fem basis."""
 
-    M: csr_array  # consistent mass matrix [kg]
+    M: csr_array  # mass [kg]
     K: csr_array  # elastic stiffness without the springs [N/m]
-    springs: csr_array  # stiffness of the foundation [N/m]
+    springs: csr_array  # of the foundation [N/m]
     F: Array  # constant load of the problem [N]
-    basis: Basis  # of displacements; coordinates relative to the start of the base
+    basis: Basis
     observers: dict[str, Array]  # row of each column of a history
 
 
@@ -194,7 +194,6 @@ def column(problem: Problem) -> Model:
 
 
 def _tensor(problem: Problem) -> bool:
-    """Whether the mesh is a tensor product."""
     return problem.mesh is None and problem.cells == "quadrilaterals"
 
 

@@ -62,7 +62,6 @@ class BodyElements:
         return facets_between(self.mesh, *part, self.body.slack)
 
     def _fixed(self) -> Indices:
-        """Numbers of the unknowns that do not move."""
         fixed = [np.empty(0, np.int64)]
         for clamp in self.body.clamps:
             fixed.append(self.basis.get_dofs(self._facets(clamp)).all())
@@ -103,7 +102,6 @@ class BodyElements:
 
     @cached_property
     def _means(self) -> Array:
-        """Rows of `means` on all unknowns."""
         parts = [_displacement.assemble(self.basis, x_part=x, y_part=y) for x, y in ((1.0, 0.0), (0.0, 1.0))]
         u_x, u_y, v_x, v_y = (_gradient.assemble(self.basis, i=i, j=j) for i in (0, 1) for j in (0, 1))
         parts += [(v_x - u_y) / 2, u_x, v_y, u_y + v_x]

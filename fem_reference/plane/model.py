@@ -58,8 +58,8 @@ class Rest:
 class BodiesResult(Result):
     """Histories of the steps that were reached; row 0 is step 1, and a contact has a column of its arrays."""
 
-    normal: Array  # force out of the second body on the first [N]
-    shear: Array  # force on the first body clockwise of that [N]
+    normal: Array  # as of `Rest` [N]
+    shear: Array
     gap: Array  # mean distance over the patch, negative where the springs are shortened [m]
     slip: Array  # mean of what its points have slid while closed, there less back [m]
     closed: Array  # share of the patch that is closed [-]
@@ -230,7 +230,6 @@ class PlaneModel:
         )
 
     def _start(self, stepper: ContactStepper, settled: bool) -> ContactState:
-        """The bodies at t = 0."""
         rows = self.points.rows
         gap = self.points.gap
         states = np.where(gap[rows.partner] > 0, AT_LOWER, INSIDE).astype(np.int8)
@@ -248,7 +247,6 @@ class PlaneModel:
         return stepper.start(unknowns(V), place, states, unknowns(D), force)
 
     def _kept(self, record: Record) -> dict[str, Any]:
-        """What a result has of some steps."""
         points = self.points
         mean = points.share[:, None]
         return {

@@ -60,7 +60,7 @@ def velocity_at_end(stage: Stage, h: float, gg: float, start: Motion, before: Mo
 
 
 def undamped_load(stage: Stage, h: float, gg: float, M: Any, C: Any, start: Motion, before: Motion, F: Any) -> Any:
-    """Return R = F* - am M A - C [(1 - af) V* + af u]."""
+    """The R above."""
     if stage.am != 0:
         F = F - stage.am * (M * start.A)
     if C is None:
