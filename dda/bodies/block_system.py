@@ -135,10 +135,7 @@ class BlockSystem:
     def rows_at(self, point: Point) -> Array:
         """The rows of displacements, rotation and strains at a point, the mean where blocks meet, (6, 6 blocks).
 
-        Raises
-        ------
-        ValueError
-            If no block holds it.
+        A ValueError if no block holds it.
         """
         rows = np.zeros((6, len(self.blocks), 6))
         numbers = self.blocks_at(point)

@@ -140,11 +140,6 @@ class UnilateralOptions:
       stays;
     - "augmented": passes of an augmented Lagrangian (Uzawa) over springs of the given stiffness until no contact is
       pressed deeper than `penetration`. They lead to the rigid stop, whose rebound is arbitrary at every step.
-
-    Raises
-    ------
-    ValueError
-        If a value is out of its range.
     """
 
     rule: str = NEWMARK  # among RULES
@@ -215,8 +210,6 @@ def solve_unilateral(
         "consistent" means M A0 = F, since no contact presses at t = 0.
     columns : sequence of str
         Any of `dda.COLUMNS`.
-    options
-        How the contacts are found; the defaults if absent.
 
     Raises
     ------

@@ -61,13 +61,7 @@ def directions_of(motion: BaseMotion | None) -> Array:
 
 @dataclass(frozen=True)
 class Load:
-    """Loads of one block or of a system of blocks, all switched on at t = 0, at once or in a ramp.
-
-    Raises
-    ------
-    ValueError
-        If a number is not finite.
-    """
+    """Loads of one block or of a system of blocks, all switched on at t = 0, at once or in a ramp."""
 
     pressure: float = 0.0  # q, downwards on the top edge [Pa]
     eccentricity: float = 0.0  # shift of the middle of the pressed part towards +x [m]
@@ -115,13 +109,9 @@ def falling(slope: float) -> tuple[float, float]:
 def pressed_part(start: Array, end: Array, eccentricity: float) -> ArrayPair:
     """The ends of the pressed part of the top edge.
 
-    It is the longest part whose middle lies `eccentricity` from the middle of the edge, towards
-    +x (towards +y on a vertical edge): the length is L - 2 |eccentricity|, the pressure is the same.
-
-    Raises
-    ------
-    ValueError
-        If nothing of the edge is left.
+    It is the longest part whose middle lies `eccentricity` from the middle of the edge, towards +x (towards +y on a
+    vertical edge): the length is L - 2 |eccentricity|, the pressure is the same. A ValueError if nothing is left of the
+    edge.
     """
     side = end - start
     length = float(np.hypot(*side))

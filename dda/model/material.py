@@ -19,11 +19,6 @@ class Material:
 
     The moduli are products and quotients of 1 - mu, 1 + mu and 1 - 2 mu, each exact or
     correctly rounded near its zero, so that nearly singular materials keep their digits.
-
-    Raises
-    ------
-    ValueError
-        If a number is not finite or out of range, or the hypothesis is unknown.
     """
 
     density: float  # rho [kg/m^3]

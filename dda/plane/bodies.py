@@ -130,7 +130,7 @@ def poses_of(blocks: int) -> Poses:
     return Poses(spin + 0j, spin, stretch, np.zeros((blocks, 3)), J, np.zeros((blocks, 3)))
 
 
-# ---- inertia of a strained block -------------------------------------------------------------------------------------
+# ---- inertia of a strained block ----
 
 
 def row_times(row: Vector, x: Vector, first: int, n: int) -> float:
@@ -196,7 +196,7 @@ def pull_of(blocks: Blocks, i: int, k: int, e: Vector) -> float:
     return pull
 
 
-# ---- where a step goes -----------------------------------------------------------------------------------------------
+# ---- where a step goes ----
 
 
 def increments(blocks: Blocks, q: Matrix, x: Vector, chords: Poses, out: Matrix) -> None:

@@ -164,7 +164,7 @@ def check_scheme(model: PlaneModel, scheme: Scheme) -> None:
         raise ValueError("stiffness: must be finite in an explicit scheme (alpha = 0), got inf")
 
 
-# ---- a model in numbers ----------------------------------------------------------------------------------------------
+# ---- a model in numbers ----
 
 
 def plane_march(model: PlaneModel, scheme: Scheme, every: int) -> March:
@@ -387,7 +387,7 @@ def start_of(model: PlaneModel, scheme: Scheme, march: March, course: Course) ->
     return state
 
 
-# ---- what comes out --------------------------------------------------------------------------------------------------
+# ---- what comes out ----
 
 
 def contact_columns(model: PlaneModel, march: March, history: History, kept: int) -> tuple[dict[str, Any], Array]:

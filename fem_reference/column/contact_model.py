@@ -26,13 +26,7 @@ class ColumnContact:
 
 @dataclass(frozen=True)
 class ContactColumn:
-    """A column on contacts.
-
-    Raises
-    ------
-    ValueError
-        For numbers that do not go together.
-    """
+    """A column on contacts."""
 
     ground: Ground  # its joints are bonded springs; an impedance makes a half-space
     law: Literal["unilateral", "frictional"]

@@ -39,13 +39,7 @@ class Stratum(Elastic):
 
 @dataclass(frozen=True)
 class Ground:
-    """A column of strata, laterally uniform and not strained sideways, per unit of area.
-
-    Raises
-    ------
-    ValueError
-        For a number out of range, or a joint outside of the column.
-    """
+    """A column of strata, laterally uniform and not strained sideways, per unit of area."""
 
     strata: tuple[Stratum, ...]  # from the base upwards
     motion: Literal["pressure", "shear"]

@@ -40,13 +40,7 @@ class Marched(NamedTuple):
 
 @dataclass
 class ContactStepper:
-    """The scheme applied to bodies on contacts.
-
-    Raises
-    ------
-    ValueError
-        If the scheme is not the rule's.
-    """
+    """The scheme applied to bodies on contacts; a scheme that is not the rule's is a `ValueError`."""
 
     system: ContactSystem
     scheme: Scheme
@@ -80,16 +74,9 @@ class ContactStepper:
         force: Array | None = None,
         pull: Callable[[Any, Array], tuple[Array, Array]] | None = None,
     ) -> ContactState:
-        """State at t = 0.
+        """State at t = 0 of a velocity [m/s] and the rows' places and states, unstrained without `D` [m] or `force`.
 
-        Parameters
-        ----------
-        V, D
-            Velocity and displacement of the unknowns [m/s, m]; unstrained without `D`.
-        place, states, force
-            Of the rows; they bear nothing without `force`.
-        pull
-            What finds forces that come at once, of M^-1 and the acceleration without them; returns both with them.
+        `pull` finds forces that come at once, of M^-1 and the acceleration without them; it returns both with them.
         """
         system = self.system
         D = np.zeros_like(V) if D is None else D

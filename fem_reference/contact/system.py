@@ -45,14 +45,8 @@ def point_rows(
 ) -> ContactRows:
     """Rows of points, which never open if `bonded`: normal ones, and where they have springs of shear those of these.
 
-    Parameters
-    ----------
-    stiffness, shear_stiffness
-        Of each point [N/m].
-    tangent
-        Of the angle of friction; None: what is closed never slips.
-    cohesion
-        Shear force that each point bears without pressure [N].
+    The stiffness is that of each point [N/m]; `tangent` is that of the angle of friction, None of what never slips;
+    `cohesion` is the shear force that each point bears without pressure [N].
     """
     compliance = 1 / stiffness
     unlimited = np.full(len(stiffness), np.inf)

@@ -39,31 +39,31 @@ KINDS = {OPEN: "opens", CLOSED: "closes"}
 
 @dataclass(frozen=True)
 class BarsHistory:
-    """The motion at given instants."""
+    """The motion at given instants, arrays of shape (bars, times)."""
 
     time: Array  # instants [s], shape (times,)
-    mean_velocity: Array  # of each bar [m/s], shape (bars, times)
-    force: Array  # N of each joint, or T on what is above; 0 where nothing is below [Pa], shape (bars, times)
-    gap: Array  # gap y, negative where a spring is pressed, 0 of a joint that does not open [m], shape (bars, times)
-    slip: Array  # slip r, 0 of a joint that does not slip [m], shape (bars, times)
+    mean_velocity: Array  # of each bar [m/s]
+    force: Array  # N of each joint, or T on what is above; 0 where nothing is below [Pa]
+    gap: Array  # gap y, negative where a spring is pressed, 0 of a joint that does not open [m]
+    slip: Array  # slip r, 0 of a joint that does not slip [m]
 
 
 @dataclass(frozen=True)
 class JointHistory:
-    """A joint at given instants."""
+    """A joint at given instants, arrays of shape (times,)."""
 
-    force: Array  # N, or T on what is above [Pa], shape (times,)
-    gap: Array  # y [m], shape (times,)
-    slip: Array  # r [m], shape (times,)
+    force: Array  # N, or T on what is above [Pa]
+    gap: Array  # y [m]
+    slip: Array  # r [m]
 
 
 @dataclass(frozen=True)
 class PointHistory:
-    """A point of a bar at given instants."""
+    """A point of a bar at given instants, arrays of shape (times,)."""
 
-    displacement: Array  # u [m], shape (times,)
-    velocity: Array  # rate of u [m/s], shape (times,)
-    stress: Array  # compression positive, of the shear the stress on what is above [Pa], shape (times,)
+    displacement: Array  # u [m]
+    velocity: Array  # rate of u [m/s]
+    stress: Array  # compression positive, of the shear the stress on what is above [Pa]
 
 
 @dataclass(frozen=True)

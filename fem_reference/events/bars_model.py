@@ -63,10 +63,7 @@ BONDED = BarJoint("frictional")  # faces that always move alike
 def function_of(piece: Piece, start: arb, rates: Rates) -> ExponentialSum:
     """A piece of a drive as a function of the time since its start [s].
 
-    Raises
-    ------
-    ValueError
-        For a Ricker pulse, which is no sum of exponentials times polynomials.
+    A Ricker pulse, which is no sum of exponentials times polynomials, is a `ValueError`.
     """
     if isinstance(piece, Ricker):
         raise ValueError(f"drive: must be made of polynomials and sines, got {piece!r}")
@@ -88,13 +85,7 @@ def size_of(piece: Piece) -> float:
 
 @dataclass(frozen=True)
 class BarsProblem:
-    """Bars from the base upwards, unstrained at t = 0, when all loads come on.
-
-    Raises
-    ------
-    ValueError
-        For numbers that do not go together.
-    """
+    """Bars from the base upwards, unstrained at t = 0, when all loads come on."""
 
     bars: tuple[Bar, ...]
     joints: tuple[BarJoint | None, ...]  # at the foot of each bar; the first is None where nothing is below

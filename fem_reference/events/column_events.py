@@ -214,20 +214,9 @@ def least_terms(problem: ColumnProblem, end: float) -> tuple[float, float]:
 def solve(
     problem: ColumnProblem, end: float, digits: int = DIGITS, limit: int = 100_000, work: Work | None = None
 ) -> ColumnMotion:
-    """The exact motion of a column from t = 0 to `end` [s], of at most `limit` switches; `work` bounds terms of series.
+    """The exact motion of a column from t = 0 to `end` [s]; `work` bounds terms of series.
 
-    Parameters
-    ----------
-    digits
-        Decimal digits of the first computation, at least 30; more are taken, up to `MOST_DIGITS`, where the instants of
-        the switches are not enclosed to `PROMISED`.
-
-    Raises
-    ------
-    ValueError
-        If `end` is not positive and finite or `digits` is below 30.
-    TooManySwitchesError, TooMuchWorkError, LostDigitsError, NoContactStateError
-        If the motion cannot be followed to its end, as `switches` has it.
+    All else is as in `block_events.solve`, but for the `AccumulationError` of impacts.
     """
     counted = work or Work()
 

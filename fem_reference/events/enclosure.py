@@ -96,18 +96,10 @@ class Fall(NamedTuple):
 def polynomial(
     coefficients: list[arb], end: arb, begin: arb = ZERO, tail: arb = ZERO, most: float = math.inf
 ) -> Smooth:
-    """A polynomial, given by the balls of its coefficients, as a function of the distance from `begin`.
+    """A polynomial, given by the balls of its coefficients, as a function of the distance of its argument from `begin`.
 
-    Parameters
-    ----------
-    end
-        Greatest argument of the polynomial.
-    begin
-        Argument at which the distance is zero.
-    tail
-        What is left out of it, and of its first two derivatives.
-    most
-        Evaluations, after which a `RuntimeError` ends the search.
+    `end` is the greatest argument, `tail` what is left out of the polynomial and of its first two derivatives. After
+    `most` evaluations a `RuntimeError` ends the search.
     """
     value = arb_poly(coefficients)
     slope = value.derivative()
@@ -127,17 +119,10 @@ def polynomial(
 
 
 def first_fall(function: Smooth, end: arb, touches: list[arb] | None = None, floor: arb | None = None) -> Fall | None:
-    """The first point in (0, end] at which a function falls through zero, None if it does not.
+    """The first point in (0, end] at which a function, positive just after zero, falls through zero; None if none.
 
-    Parameters
-    ----------
-    function
-        Positive just after zero.
-    touches
-        Takes the points at which the function comes so near to zero, over intervals of half the digits, that a
-        crossing can be neither proven nor excluded; they count as none.
-    floor
-        Size below which the function counts as zero, and as no crossing.
+    `touches` takes the points at which the function comes so near to zero, over intervals of half the digits, that a
+    crossing can be neither proven nor excluded; they count as none, as does what is below `floor`.
     """
     finest = end * arb(2) ** (-ctx.prec // 2)
     pending = [(ZERO, end)]

@@ -54,10 +54,7 @@ CHUNK = 2**22
 def history(waves: Waves, first: float, times: Array, kappa: float, a: float) -> Array:
     """History of the damped bar from the waves of the undamped one, of which one arrives `first`, shape (times,).
 
-    Raises
-    ------
-    ValueError
-        If the waves that count until the last instant are too many.
+    Too many waves until the last instant are a `ValueError`.
     """
     # The kernel falls as exp(-a s^2 / (2 t)): earlier waves have arrived by diffusion alone, and are nothing so far.
     latest = float(np.minimum(times, np.sqrt(2 * DEAD * times / a)).max(initial=0.0))

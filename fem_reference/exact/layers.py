@@ -50,12 +50,7 @@ def amplitudes(
 ) -> tuple[dict[str, Complex], dict[str, Complex]]:
     """The complex amplitudes of columns for a unit velocity at the base, and for a unit pressure on the top.
 
-    Parameters
-    ----------
-    omega
-        Angular frequencies, real or complex [rad/s], not zero.
-    squared
-        What stands for w^2 in the layers [1/s2], where they are damped.
+    The angular frequencies, real or complex, are not zero [rad/s]; `squared` stands for w^2 in layers that are damped.
     """
     w = np.asarray(omega, complex)
     w2 = np.asarray(w * w if squared is None else squared, complex)
@@ -134,12 +129,7 @@ def solve_layers(
 ) -> Result:
     """The exact history at the steps, with the change by the last halving of the samples as its error.
 
-    Parameters
-    ----------
-    scheme
-        Its step, and its gg as a rate; alpha and delta play no part.
-    drive
-        The excitation at any instants [s].
+    Of the scheme step and gg count, gg as a rate; `drive` is the excitation at any instants [s].
 
     Raises
     ------

@@ -110,14 +110,9 @@ class RockingMotion:
 
 
 def solve(block: RockingBlock, end: float, tilt: float) -> RockingMotion:
-    """The motion of a block that is released at rest, from impact to impact.
+    """The motion of a block that is released at rest from a tilt [rad], positive about the right corner.
 
-    Parameters
-    ----------
-    end
-        Last instant [s]; the motion ends earlier if the block falls on its side.
-    tilt
-        Rotation at t = 0 [rad], positive about the right corner.
+    It goes from impact to impact until `end` [s], or until the block falls on its side.
 
     Raises
     ------

@@ -84,9 +84,9 @@ def recorded(time: ArrayLike, acceleration: ArrayLike) -> tuple[Segment, ...]:
     Parameters
     ----------
     time
-        Instants [s], not falling, shape (rows,).
+        [s], not falling, shape (rows,).
     acceleration
-        Accelerations towards +x [m/s2], shape (rows,).
+        Towards +x [m/s2], shape (rows,).
     """
     t, a = _rows("recorded", time, acceleration)
     ends = pairwise(zip(t, a, strict=True))
@@ -100,9 +100,9 @@ def moved(time: ArrayLike, displacement: ArrayLike) -> tuple[Segment, ...]:
     Parameters
     ----------
     time
-        Instants [s], rising, shape (rows,).
+        [s], rising, shape (rows,).
     displacement
-        Displacements towards +x [m], shape (rows,).
+        Towards +x [m], shape (rows,).
     """
     t, x = _rows("moved", time, displacement)
     if np.any(np.diff(t) <= 0):
@@ -149,12 +149,7 @@ class SlidingMotion:
 
 
 def solve(block: SlidingBlock, base: tuple[Segment, ...], end: float) -> SlidingMotion:
-    """The exact motion to `end` [s] of a mass that is at rest with its base before t = 0.
-
-    Parameters
-    ----------
-    base
-        The base, by `recorded` or `moved`.
+    """The exact motion to `end` [s] of a mass at rest before t = 0 with its base, which is `recorded` or `moved`.
 
     Raises
     ------

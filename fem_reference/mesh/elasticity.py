@@ -133,16 +133,10 @@ def edge_rule(
     intervals: Sequence[tuple[float, float]],
     quadrature: tuple[Array, Array],
 ) -> Rule:
-    """Rule over the part of a straight edge, given by its facets, that lies in intervals of its arc length.
+    """Rule over the part of a straight edge, given by its facets, that lies in disjoint intervals of arc length [m].
 
-    Parameters
-    ----------
-    origin, tangent
-        Start and unit direction of the edge, shape (2,).
-    intervals
-        Disjoint intervals of arc length [m].
-    quadrature
-        Places from -1 to 1 and weights on each piece: `gauss`, or one of `LUMPED`.
+    `origin` and `tangent` are its start and unit direction; `quadrature` has places from -1 to 1 and weights on each
+    piece: `gauss`, or one of `LUMPED`.
     """
     nodes, weights = quadrature
     cells = mesh.f2t[0, facets]

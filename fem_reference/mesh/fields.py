@@ -50,10 +50,7 @@ def prolongation(problem: Problem, model: Model, basis: Basis) -> csr_array:
 def frames_of(path: Path, steps: int) -> list[int]:
     """Numbers of the steps that a file has: ``.xdmf`` a series of at most `FRAMES`, ``.vtu`` the last one.
 
-    Raises
-    ------
-    ValueError
-        If the file's ending is neither, or meshio is not installed.
+    Another ending, or no meshio, is a `ValueError`.
     """
     require(path.suffix in SUFFIXES, "fields", f"must end in one of {SUFFIXES}", str(path))
     files.library()

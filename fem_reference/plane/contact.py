@@ -80,10 +80,7 @@ class ContactPoints(NamedTuple):
 def points_of(contacts: Sequence[PatchContact], bodies: Sequence[BodyElements], first: Sequence[int]) -> ContactPoints:
     """The points of contacts of bodies; `first` are the numbers of their first unknowns, and that of all at the end.
 
-    Raises
-    ------
-    ValueError
-        A patch does not lie on the outlines of its bodies, or there is no such body.
+    A patch off the outlines of its bodies, or without such a body, is a `ValueError`.
     """
     size = first[-1]
     none = np.zeros(0)

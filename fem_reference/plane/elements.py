@@ -38,10 +38,7 @@ def _traction(v, w):  # type: ignore[no-untyped-def]
 class BodyElements:
     """M D'' + K D = F of a body on its mesh, clamped unknowns left out.
 
-    Raises
-    ------
-    ValueError
-        A clamp or a load does not lie on the outline.
+    A clamp or a load off the outline is a `ValueError`.
     """
 
     def __init__(self, body: PlaneBody) -> None:
@@ -115,10 +112,7 @@ class BodyElements:
     def observer(self, start: Point, end: Point) -> Array:
         """The rows of the mean displacement in x and y of a part of the outline, or of a point, (2, unknowns).
 
-        Raises
-        ------
-        ValueError
-            Nothing lies there.
+        A `ValueError` if nothing lies there.
         """
         if start == end:
             return self._at(start)[:, self.free]
@@ -137,10 +131,7 @@ class BodyElements:
     def stress_error(self, D: Array) -> float:
         """The largest difference of a stress component from the loads' own, over the largest of these.
 
-        Raises
-        ------
-        ValueError
-            The loads are not those of a stress.
+        A `ValueError` if the loads are not those of a stress.
         """
         stress = np.array(self.body.stress)
         if not np.any(stress):

@@ -19,12 +19,7 @@ def require_numbers(
 ) -> None:
     """Raise a `ValueError` for the first number of a dataclass that is not finite, or out of its range.
 
-    Parameters
-    ----------
-    positive, unsigned
-        Fields that must be positive, or not negative.
-    infinite
-        Fields that may be infinite.
+    Fields that are named must be positive, or not negative (`unsigned`), or may be infinite.
     """
     for field in fields(data):
         name = field.name

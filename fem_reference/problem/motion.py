@@ -12,13 +12,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Motion:
-    """Displacement of the foundation's fixed side, piecewise linear, held beyond both ends of its record.
-
-    Raises
-    ------
-    ValueError
-        For a record that is not one of increasing instants and finite numbers.
-    """
+    """Displacement of the foundation's fixed side, piecewise linear, held beyond both ends of its record."""
 
     time: tuple[float, ...]  # instants [s], increasing
     x: tuple[float, ...]  # displacement at the instants [m]
@@ -43,7 +37,7 @@ class Motion:
 def moved_base(motion: Motion | None, positions: Array, times: Array) -> Array:
     """Displacement of a base in x and y at the ends of the stages, shape (steps, stages, 2) [m]; zero without motion.
 
-    These are given by the positions of the steps [steps] and by times [s], shape (steps, stages).
+    `positions` are those of the steps [steps], `times` those of the ends of their stages [s], shape (steps, stages).
     """
     if motion is None:
         return np.zeros((*times.shape, 2))

@@ -22,7 +22,7 @@ DENSE = 400
 def modes(
     problem: Problem, scheme: Scheme, count: int = 12, full: bool = False, model: Model | None = None
 ) -> tuple[Mode, ...]:
-    """Natural modes, greatest share of the static response first, which is that of the first axial mode.
+    """Natural modes by falling share of the static response; the first one is the first axial mode.
 
     Parameters
     ----------
@@ -100,13 +100,7 @@ def highest_frequency(problem: Problem, full: bool = False, model: Model | None 
 
 
 def largest_frequency(K: csr_array, M: csr_array) -> float:
-    """Largest natural frequency of M D'' + K D = 0 [rad/s].
-
-    Raises
-    ------
-    OverflowError
-        If mass or stiffness leave the range of double precision.
-    """
+    """Largest natural frequency of M D'' + K D = 0 [rad/s]; an `OverflowError` beyond double precision."""
     size = K.shape[0]
     if not (np.isfinite(K.data).all() and np.isfinite(M.data).all()):
         raise OverflowError("mass or stiffness of the elements is out of range")

@@ -121,14 +121,9 @@ class Stepper:
         return Motion(zero, start_velocity(zero, A, self.scheme), A)
 
     def advance(self, state: Motion, loads: Sequence[Array] | None = None, gg: float | None = None) -> Motion:
-        """One step.
+        """One step, under the loads at its start and at the end of each stage, where they are not the constant one.
 
-        Parameters
-        ----------
-        loads
-            At its start and at the end of each stage, where they are not the constant one.
-        gg
-            Discount of this step, where it is not the scheme's.
+        Its discount is `gg`, where that is not the scheme's.
         """
         loads = [self.F] * (len(self.solves) + 1) if loads is None else loads
         gg = self.scheme.gg if gg is None else gg

@@ -14,8 +14,7 @@ explicit, and for a body that no spring of K holds, the same is
 
     e = S^-1 [R - K (D + (1 - af) dD*)],     dD = dD* + b h^2 e,     A1 = e / (1 - am)
 
-in which a rigid motion has no forces. Newmark's only stage has d_u = 1, e_0 = 1/2 - alpha, beta = alpha,
-g_0 = 1 - delta, gamma = delta, am = af = 0.
+in which a rigid motion has no forces.
 
 M, C, K and S^-1 are numbers, diagonals or operators (`fem_reference.scheme.newmark.Operator`): all that is asked of
 them is the product with a vector, written as that of numbers. The functions run as they stand, or compiled by numba.
