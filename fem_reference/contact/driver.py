@@ -64,8 +64,8 @@ def make_steps(
 def cut_step(stepper: ContactStepper, marched: Marched, cut: Cut, row: Record) -> Marched:
     """Make a step that has failed in one piece in shorter pieces, and fill its `row`.
 
-    A piece without a contact is repeated shorter, as are those after it, down to the shortest, before which the state
-    is returned that has none. The next step is tried in one piece again.
+    A piece without a contact is repeated shorter, as are those after it; where the shortest has none the state is that
+    before it. The next step is tried in one piece again.
     """
     solves = marched.solves
     cuts = 0

@@ -66,7 +66,7 @@ class BlockProblem:
     height: float  # b [m]
     density: float  # rho [kg/m3]
     young: float  # E [Pa]; `math.inf`: a rigid block
-    stiffness: float  # normal one p of one corner [N/m]; `math.inf`: rigid contact, which needs `restitution`
+    stiffness: float  # p of one corner [N/m]; `math.inf`: rigid contact, which needs `restitution`
     pressure: float = 0.0  # q on the top edge [Pa], downwards, from t = 0 on
     shear_stiffness: float = 0.0  # p_s of a closed corner [N/m]; 0: frictionless, else glued in shear
     poisson: float = 0.0  # mu [-]

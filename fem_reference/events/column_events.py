@@ -37,7 +37,7 @@ class ColumnHistory:
     """The motion at given instants; arrays over blocks or joints from the base upwards, and over the instants."""
 
     time: Array  # [s], shape (times,)
-    foot: Array  # displacement of each block's [m], shape (blocks, times)
+    foot: Array  # displacement of the foot of each block [m], shape (blocks, times)
     top: Array  # of its top [m]
     foot_velocity: Array  # [m/s]
     top_velocity: Array  # [m/s]

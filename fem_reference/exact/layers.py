@@ -50,7 +50,8 @@ def amplitudes(
 ) -> tuple[dict[str, Complex], dict[str, Complex]]:
     """The complex amplitudes of columns for a unit velocity at the base, and for a unit pressure on the top.
 
-    The angular frequencies, real or complex, are not zero [rad/s]; `squared` stands for w^2 in layers that are damped.
+    The angular frequencies, real or complex, are not zero [rad/s]; `squared` stands for w^2 [1/s2] where layers are
+    damped.
     """
     w = np.asarray(omega, complex)
     w2 = np.asarray(w * w if squared is None else squared, complex)

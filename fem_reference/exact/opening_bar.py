@@ -65,7 +65,8 @@ class OpeningBar(BarProblem):
         """History under a scheme; row 0 is step 1.
 
         Its columns are `displacement` of the mid-height [m], `contact_pressure` N / W [Pa], `gap` w under the base [m],
-        negative where pressed, `closed`, 1 or else 0 [-], and `velocity` of the centre of mass, upwards [m/s].
+        negative where pressed, `closed`, 1 where it is, else 0 [-], and `velocity` of the centre of mass, upwards
+        [m/s].
 
         Raises
         ------

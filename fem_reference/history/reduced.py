@@ -33,7 +33,7 @@ CANCELLED = 1e-11
 """Rounding of a column, over its maximum, beyond which it must be stepped."""
 FEWEST = 8
 LARGEST = 400
-"""Least and most vectors."""
+"""Least and greatest number of vectors."""
 SLOW = 0.1
 """kappa below which 1 - tau is formed again where digits count."""
 PAID = 4

@@ -101,7 +101,7 @@ class PlaneModel:
         self.base_motion = base_motion
 
     def observer(self, start: Point, end: Point, body: int = 0) -> Array:
-        """The rows of `BodyElements.observer` of a body."""
+        """The rows of `BodyElements.observer` of a body, on all unknowns."""
         return self.rows(self.parts[body].observer(start, end), body)
 
     def means(self, body: int) -> Array:

@@ -43,8 +43,8 @@ class Problem(Elastic):
     young: float  # E [Pa]
     poisson: float  # mu [-]
     hypothesis: str  # ``"plane stress"`` or ``"plane strain"``
-    stiffness: float  # normal one p of one corner spring [N/m]; the foundation carries 2 p in all
-    shear_stiffness: float  # tangential one of one corner spring [N/m]
+    stiffness: float  # p of one corner spring, normal [N/m]; the foundation carries 2 p in all
+    shear_stiffness: float  # p_s, tangential [N/m]
     pressure: float  # q on the top edge [Pa], downwards
     elements: int = 16  # along each side of a structured mesh [-]
     degree: int = 2  # of the elements [-], 1 or 2

@@ -170,8 +170,8 @@ def ramped_response(omega: Array, weights: Array, scheme: Scheme, steps: int, sh
 def power_histories(step: Extended, start: Array, weights: Array, steps: int) -> Array:
     """Weighted sums of the first entry of modes at every step, shape (quantities, steps).
 
-    They come from the map of one step, (modes, 4, 4), and of the states at t = 0, (modes, 4). Step 1 + i + j B is the
-    row of 1 + i steps times the state after j B: about the root of the steps of each are made, one after the other in
+    They come from the map of one step, (modes, 4, 4), and the states at t = 0, (modes, 4). Step 1 + i + j B is the row
+    of 1 + i steps times the state after j B: about the root of the steps of each are made, one after the other in
     extended precision.
     """
     block = math.isqrt(steps - 1) + 1
