@@ -144,10 +144,7 @@ class GluedBlocks:
     def rest(self) -> Array:
         """Displacements of the blocks at rest under the constant loads, (blocks, 6).
 
-        Raises
-        ------
-        ValueError
-            If nothing holds the blocks and their loads have a resultant.
+        A ValueError if nothing holds them and the loads have a resultant.
         """
         equations = self.statics
         z, force = equations.at_rest(equations.F, np.zeros(len(equations.pressure)))
@@ -166,12 +163,8 @@ class GluedBlocks:
     def observer(self, start: Point, end: Point) -> Array:
         """The rows of the mean displacement in x and y of a part of the outline, or of a point, (2, 6 blocks).
 
-        A block of one strain moves its edges linearly: the mean is that of the middle.
-
-        Raises
-        ------
-        ValueError
-            If nothing lies there.
+        A block of one strain moves its edges linearly: the mean is that of the middle. A ValueError if nothing lies
+        there.
         """
         if start == end:
             return self.system.rows_at(start)[:2]

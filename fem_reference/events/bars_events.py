@@ -122,12 +122,9 @@ class BarsMotion:
         return np.asarray(self._rows(times, row)[0])
 
     def point(self, bar: int, height: float, times: ArrayLike) -> PointHistory:
-        """A point of a bar, its height above the foot of the bar [m], at instants in any order.
+        """A point of a bar, its height above the foot of the bar [m], at instants from 0 to `end`.
 
-        Raises
-        ------
-        ValueError
-            If an instant is not from 0 to `end`, or the height is not in the bar.
+        A `ValueError` for an instant or a height elsewhere.
         """
         data = self.problem.bars[bar]
         if not 0 <= height <= data.length:

@@ -49,13 +49,7 @@ class Bar(BarProblem):
 
     @classmethod
     def of(cls, problem: Problem) -> Bar:
-        """The bar that a problem reduces to.
-
-        Raises
-        ------
-        ValueError
-            If the bar is not exact for the problem.
-        """
+        """The bar that a problem reduces to; a `ValueError` if it is not exact for the problem."""
         reason = applicable(problem)
         if reason is not None or problem.rectangle is None:
             raise ValueError(f"problem: must reduce to a bar, but {reason}")

@@ -130,12 +130,8 @@ def solve_layers(
 ) -> Result:
     """The exact history at the steps, with the change by the last halving of the samples as its error.
 
-    Of the scheme step and gg count, gg as a rate; `drive` is the excitation at any instants [s].
-
-    Raises
-    ------
-    ValueError
-        For an unknown column, a height outside, or gg = 0.
+    Of the scheme step and gg count, gg as a rate; `drive` is the excitation at any instants [s]. A `ValueError` for an
+    unknown column, a height outside, or gg = 0.
     """
     ground.check_request(columns, heights)
     if reason := applicable(scheme):

@@ -49,10 +49,7 @@ class OpeningBar(BarProblem):
     def of(cls, problem: Problem, gap: float = 0.0, velocity: float = 0.0) -> OpeningBar:
         """The bar that a problem reduces to, a gap [m] above its springs and with a velocity [m/s].
 
-        Raises
-        ------
-        ValueError
-            If the bar is not exact for the problem, or `gap` or `velocity` are out of their range.
+        A `ValueError` if it is not exact for the problem, or a number is out of its range.
         """
         reason = applicable(problem)
         if reason is not None or problem.rectangle is None:

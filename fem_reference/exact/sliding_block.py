@@ -151,10 +151,7 @@ class SlidingMotion:
 def solve(block: SlidingBlock, base: tuple[Segment, ...], end: float) -> SlidingMotion:
     """The exact motion to `end` [s] of a mass at rest before t = 0 with its base, which is `recorded` or `moved`.
 
-    Raises
-    ------
-    ValueError
-        If `end` is not positive and finite.
+    A `ValueError` unless `end` is positive and finite.
     """
     require(0 < end < math.inf, "end", "must be positive and finite", end)
     slide = 0.0

@@ -51,7 +51,7 @@ def named_scheme(
     Raises
     ------
     ValueError
-        For an unknown name, or a value out of its range or not of the scheme, naming field, rule and value.
+        For an unknown name, or a value out of its range or not of the scheme.
 
     Examples
     --------
