@@ -22,7 +22,7 @@ _STATE = {"displacement": 0, "strain_x": 1, "strain_y": 2, "contact_pressure": 3
 
 
 def textbook_applicable(model: TwoBlockModel, scheme: Scheme) -> str | None:
-    """Why the printed recursion does not apply, or None if it does."""
+    """Return why the printed recursion does not apply, or None if it does."""
     if scheme.table is not None:
         return f"eq. (6), (7) are Newmark's, not those of {scheme.name}"
     if scheme.damped:
@@ -76,13 +76,13 @@ def solve_textbook(
 
 
 def inertia(model: TwoBlockModel) -> Array:
-    """That of (v, ex, ey)."""
+    """Return that of (v, ex, ey)."""
     width, height = np.ptp(model.block.corners, axis=0)
     return np.asarray(model.block.total_mass * np.array([1.0, width**2 / 12, height**2 / 12]))
 
 
 def recursion_matrix(model: TwoBlockModel, scheme: Scheme) -> Array:
-    """The matrix of eq. (31) in (dv, dex, dey)."""
+    """Return the matrix of eq. (31) in (dv, dex, dey)."""
     width, height = np.ptp(model.block.corners, axis=0)
     p = model.contact.normal
     K = np.diag(inertia(model) / (scheme.alpha * scheme.step**2))

@@ -117,7 +117,7 @@ class BlockSystem:
         return self.equations.reduced()
 
     def _load(self) -> Array:
-        """Surface loads and weights, six for each block."""
+        """Return surface loads and weights, six for each block."""
         F = np.zeros((len(self.blocks), 6))
         for i, block in enumerate(self.blocks):
             F[i, :2] = block.material.density * block.section.area * self.gravity * np.array(falling(self.slope))
@@ -129,11 +129,11 @@ class BlockSystem:
         return F.ravel()
 
     def blocks_at(self, point: Point) -> list[int]:
-        """The numbers of the blocks that hold a point, their boundaries included."""
+        """Return the numbers of the blocks that hold a point, their boundaries included."""
         return [i for i, block in enumerate(self.blocks) if _holds(block.corners, np.array(point))]
 
     def rows_at(self, point: Point) -> Array:
-        """The rows of displacements, rotation and strains at a point, the mean where blocks meet, (6, 6 blocks).
+        """Return the rows of displacements, rotation and strains at a point, the mean where blocks meet, (6, 6 blocks).
 
         A ValueError if no block holds it.
         """
@@ -189,18 +189,18 @@ class Equations:
         return self.at_rest(F, self.G @ base)
 
     def pushed(self, size: float) -> Array:
-        """The load that shares refer to: the constant one, else the inertia."""
+        """Return the load that shares refer to: the constant one, else the inertia."""
         return self.F if np.any(self.F) else self.inertia
 
     def steady(
         self, rows: ArrayPair, F: Array, base: Array, scheme: Scheme, frequencies: ArrayLike, exact: bool
     ) -> Complex:
-        """What rows observe of a steady vibration, (rows, frequencies)."""
+        """Return what rows observe of a steady vibration, (rows, frequencies)."""
         W2, factor = answering(scheme, frequencies, exact)
         return np.asarray(amplitudes(self, rows, F, self.G @ base, W2) * factor)
 
     def lowest(self, count: int) -> tuple[Array, Array, Array]:
-        """The lowest w^2, their normalised shapes and the joint forces of the shapes.
+        """Return the lowest w^2, their normalised shapes and the joint forces of the shapes.
 
         K^-1 is applied by the saddle-point solver, so that stiff joints cost no digits.
         """
@@ -225,14 +225,14 @@ class Equations:
         return squares, shapes, np.array(forces).T
 
     def largest(self) -> float:
-        """The highest natural frequency, joints included [rad/s]."""
+        """Return the highest natural frequency, joints included [rad/s]."""
         from scipy.sparse import diags_array
 
         K = diags_array(self.k) + self.B.T @ self.kappa @ self.B
         return elimination.largest_frequency(K.tocsr())
 
     def reduced(self) -> Equations:
-        """The equations without the modes and gaps that no load can reach.
+        """Return the equations without the modes and gaps that no load can reach.
 
         Reach is the connectivity of the structural non-zeros of B and kappa.
         """
@@ -263,7 +263,7 @@ class Equations:
         )
 
     def rows(self, columns: Sequence[str]) -> ArrayPair:
-        """The rows of some columns by z and by lambda."""
+        """Return the rows of some columns by z and by lambda."""
         by_modes = np.zeros((len(columns), len(self.k)))
         by_force = np.zeros((len(columns), len(self.pressure)))
         for i, name in enumerate(columns):
@@ -275,7 +275,7 @@ class Equations:
 
 
 def factor(matrix: csr_array, definite: bool = True) -> Callable[[Array], Array]:
-    """The solver of a sparse symmetric matrix; a definite one keeps diagonal pivots and symmetric fill-in."""
+    """Return the solver of a sparse symmetric matrix; a definite one keeps diagonal pivots and symmetric fill-in."""
     from scipy.sparse import csc_array
     from scipy.sparse.linalg import splu
 
@@ -315,14 +315,14 @@ def _springs(blocks: Sequence[Block], joints: Sequence[Joint]) -> tuple[csr_arra
 
 
 def _block_diagonal(blocks: Sequence[Array]) -> csr_array:
-    """The matrix with square blocks on its diagonal, without their zeros."""
+    """Return the matrix with square blocks on its diagonal, without their zeros."""
     firsts = np.cumsum([0, *(len(block) for block in blocks)]).tolist()
     pieces = list(zip(firsts, firsts, blocks, strict=False))
     return _assembled(pieces, firsts[-1], firsts[-1])
 
 
 def _assembled(pieces: Sequence[tuple[int, int, Array]], rows: int, columns: int) -> csr_array:
-    """The sparse matrix of dense pieces, each with its first row and column, without their zeros."""
+    """Return the sparse matrix of dense pieces, each with its first row and column, without their zeros."""
     from scipy.sparse import csr_array
 
     data = [np.zeros(0)]
@@ -335,25 +335,25 @@ def _assembled(pieces: Sequence[tuple[int, int, Array]], rows: int, columns: int
 
 
 def _inverse(matrix: Array) -> Array:
-    """The inverse of a positive definite matrix, scaled so that a widely spread diagonal keeps its digits."""
+    """Return the inverse of a positive definite matrix, scaled so that a widely spread diagonal keeps its digits."""
     root = np.sqrt(np.diag(matrix))
     scale = np.outer(root, root)
     return np.asarray(np.linalg.inv(matrix / scale) / scale)
 
 
 def _without_rounding(M: Array) -> Array:
-    """A positive definite matrix with the zeros of a symmetric shape made exact."""
+    """Return a positive definite matrix with the zeros of a symmetric shape made exact."""
     root = np.sqrt(np.diag(M))
     return without_rounding(M, np.outer(root, root))
 
 
 def _levers(block: Block) -> Array:
-    """The size of the displacement of a block's points by its unknowns, by which a symmetric place has zeros."""
+    """Return the size of the displacement of a block's points by its unknowns, by which a symmetric place has zeros."""
     return np.array([1.0, 1.0, *[float(np.max(np.ptp(block.corners, axis=0)))] * 4])
 
 
 def _holds(corners: Array, point: Array) -> bool:
-    """Whether a polygon holds a point, its boundary included."""
+    """Tell whether a polygon holds a point, its boundary included."""
     slack = 1e-9 * float(np.max(np.ptp(corners, axis=0)))
     start = (corners - point) @ np.array([1, 1j])  # in the plane of complex numbers
     end = np.roll(start, -1)

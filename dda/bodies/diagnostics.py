@@ -36,7 +36,7 @@ def _scaled(form: GapForm, scheme: Scheme) -> tuple[Array, Array, Array]:
 
 
 def diagnostics(model: TwoBlockModel, scheme: Scheme) -> Diagnostics:
-    """Conditioning, residual and spectral radius of the assembled step."""
+    """Return conditioning, residual and spectral radius of the assembled step."""
     form = model.reached
     M, k, F = _scaled(form, scheme)
     S = step_matrices(scheme, M, np.diag(k))[-1]
@@ -56,7 +56,7 @@ def diagnostics(model: TwoBlockModel, scheme: Scheme) -> Diagnostics:
 
 
 def _stepped_radius(scheme: Scheme, reached: tuple[Mode, ...]) -> float:
-    """The largest |lambda| of the steps of the modes."""
+    """Return the largest |lambda| of the steps of the modes."""
     if scheme.table is None:
         return max(abs(mode.eigenvalues[0]) for mode in reached)
     steps = [step_of_mode(scheme, mode.frequency * scheme.step) for mode in reached]
@@ -64,7 +64,7 @@ def _stepped_radius(scheme: Scheme, reached: tuple[Mode, ...]) -> float:
 
 
 def step_of_mode(scheme: Scheme, omega: float) -> Array:
-    """The (3, 3) matrix of one unloaded step of a mode of w dt = omega on (D, dt V, dt^2 A), undamped."""
+    """Return the (3, 3) matrix of one unloaded step of a mode of w dt = omega on (D, dt V, dt^2 A), undamped."""
     k = omega * omega
     S = step_matrices(scheme, 1.0, k)
     still = [0.0 for _ in S]
@@ -73,7 +73,7 @@ def step_of_mode(scheme: Scheme, omega: float) -> Array:
 
 
 def _predicted(scheme: Scheme, omegas: Array) -> float:
-    """The largest |lambda| of some w dt from trace and determinant in closed form."""
+    """Return the largest |lambda| of some w dt from trace and determinant in closed form."""
     if scheme.table is not None or scheme.damped:
         return max(abs(complex(roots.roots(scheme, omega)[0])) for omega in omegas.tolist())
     return float(np.max(spectral.spectral_radius(omegas, scheme.alpha, scheme.delta, scheme.gg)))

@@ -65,7 +65,7 @@ class GapForm:
     corners: Array  # (2, n, 2) displacements along and away from the base, of its corners M and N
 
     def reduced(self) -> GapForm:
-        """The form without the unknowns that the load cannot reach.
+        """Return the form without the unknowns that the load cannot reach.
 
         They are found by connectivity: an unknown stays if it is loaded, or coupled by a
         structural non-zero of M to one that stays (K is diagonal and couples nothing).
@@ -73,7 +73,7 @@ class GapForm:
         return self.restricted(np.flatnonzero(self.reached_from((self.F != 0) | np.any(self.M @ self.R != 0, axis=1))))
 
     def reached_from(self, pushed: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Which unknowns move: the pushed ones and those that M couples to them, (n,)."""
+        """Return which unknowns move: the pushed ones and those that M couples to them, (n,)."""
         reached = pushed
         coupled = self.M != 0
         while np.any((grown := reached | coupled @ reached) != reached):
@@ -86,7 +86,7 @@ class GapForm:
         return modal_form(self)
 
     def rows(self, columns: Sequence[str]) -> ArrayPair:
-        """The rows of some columns by x and by the displacement of the base in x and y."""
+        """Return the rows of some columns by x and by the displacement of the base in x and y."""
         own = {"horizontal_displacement": [1.0, 0.0], "displacement": [0.0, 1.0]}
         by_base = [own.get(name, [0.0, 0.0]) for name in columns]
         return np.array([self.observers[name] for name in columns]), np.array(by_base)
@@ -96,7 +96,7 @@ class GapForm:
         return F / self.K, base
 
     def pushed(self, size: float) -> Array:
-        """The load, or where the base alone acts the inertia M R of its unit acceleration."""
+        """Return the load, or where the base alone acts the inertia M R of its unit acceleration."""
         inertia = np.sum(self.M @ self.R, axis=1)
         return inertia if size == 0 and np.any(inertia) else self.F
 
@@ -106,13 +106,13 @@ class GapForm:
         return frequencies**2, self.modal.shapes, np.zeros((2, len(frequencies)))
 
     def largest(self) -> float:
-        """The highest natural frequency [rad/s]."""
+        """Return the highest natural frequency [rad/s]."""
         return float(np.max(self.modal.frequencies))
 
     def steady(
         self, rows: ArrayPair, F: Array, base: Array, scheme: Scheme, frequencies: ArrayLike, exact: bool
     ) -> Complex:
-        """What rows observe of a steady vibration, mode by mode, (rows, frequencies)."""
+        """Return what rows observe of a steady vibration, mode by mode, (rows, frequencies)."""
         modal = self.modal
         load = modal.shapes.T @ F
         carried = modal.translation @ base
@@ -128,7 +128,7 @@ class GapForm:
         return np.asarray(rows[0] @ modal.shapes @ x + (rows[1] @ base)[:, None])
 
     def restricted(self, unknowns: NDArray[np.intp]) -> GapForm:
-        """The form in the unknowns with the given indices."""
+        """Return the form in the unknowns with the given indices."""
         return GapForm(
             tuple(self.unknowns[i] for i in unknowns),
             self.M[unknowns[:, None], unknowns],
@@ -171,14 +171,14 @@ def gap_form(block: Block, contact: Contact, base: int, top: int, load: Load) ->
 
 
 def _moves(c: float) -> Array:
-    """The displacements along and away from the base by the unknowns, (2, 6, 3): weights of 1, x' and y'."""
+    """Return the displacements along and away from the base by the unknowns, (2, 6, 3): weights of 1, x' and y'."""
     along = [[1, 0, 0], [0, 0, 0], [0, 0, -1], [0, 1, 0], [0, 0, 0], [0, 0, 1]]
     away = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, -c], [0, 0, 1], [0, 0, 0]]
     return np.array([along, away], dtype=float)
 
 
 def _moments(i: AreaIntegrals) -> Array:
-    """The integrals of the products of 1, x' and y', (3, 3), with the zeros of a symmetric shape made exact."""
+    """Return the integrals of the products of 1, x' and y', (3, 3), with the zeros of a symmetric shape made exact."""
     x, xy = without_rounding([i.x, i.xy], np.sqrt([i.area * i.xx, i.xx * i.yy])).tolist()
     return np.array([[i.area, x, i.y], [x, i.xx, xy], [i.y, xy, i.yy]])
 
@@ -195,19 +195,19 @@ def free_block(M: Array, block: Block) -> ArrayPair:
 
 
 def elastic_stiffness(material: Material, area: float) -> Array:
-    """The diagonal of a block's own stiffness in (U, w, s, ex, e2, gxy)."""
+    """Return the diagonal of a block's own stiffness in (U, w, s, ex, e2, gxy)."""
     return area * np.array([0.0, 0.0, 0.0, material.free_modulus, material.constrained_modulus, material.shear_modulus])
 
 
 def _stiffness(material: Material, contact: Contact, area: float, a: float) -> Array:
-    """The diagonal of the stiffness in (U, w, s, ex, e2, gxy)."""
+    """Return the diagonal of the stiffness in (U, w, s, ex, e2, gxy)."""
     pn = contact.normal
     ps = contact.shear
     return np.array([2 * ps, 2 * pn, pn * a * a / 2, ps * a * a / 2, 0.0, 0.0]) + elastic_stiffness(material, area)
 
 
 def _load(local: Array, top: int, axes: Array, moves: Array, load: Load) -> Array:
-    """The load on the top edge: pressure in global -y, traction in global +x."""
+    """Return the load on the top edge: pressure in global -y, traction in global +x."""
     ends = np.array([local[top], local[(top + 1) % len(local)]])
     pressed = ends
     if load.eccentricity != 0:
@@ -219,7 +219,7 @@ def _load(local: Array, top: int, axes: Array, moves: Array, load: Load) -> Arra
 
 
 def _edge(ends: Array, extent: Array, traction: Array, moves: Array) -> Array:
-    """The load of a uniform traction (local directions) on a straight part of the outline."""
+    """Return the load of a uniform traction (local directions) on a straight part of the outline."""
     middle = without_rounding((ends[0] + ends[1]) / 2, extent)
     force = float(np.hypot(*(ends[1] - ends[0]))) * traction
     return np.asarray(force @ (moves @ np.array([1.0, *middle])))
@@ -233,7 +233,7 @@ def _translation(axes: Array, load: Load) -> Array:
 
 
 def _to_block_unknowns(moves: Array, centroid: Array, axes: Array) -> Array:
-    """The 6 x 6 matrix Q of D = Q x, D in global directions about the centroid (1, x', y')."""
+    """Return the 6 x 6 matrix Q of D = Q x, D in global directions about the centroid (1, x', y')."""
     slope = moves[:, :, 1:]
     rotation = (slope[1, :, 0] - slope[0, :, 1]) / 2
     strain = np.einsum("ka,kil,lb->abi", axes, (slope + slope.transpose(2, 1, 0)) / 2, axes)
@@ -241,7 +241,7 @@ def _to_block_unknowns(moves: Array, centroid: Array, axes: Array) -> Array:
 
 
 def _observers(Q: Array, contact: Contact, a: float) -> Columns:
-    """The row of every column: the block's unknowns and -2 pn w / a."""
+    """Return the row of every column: the block's unknowns and -2 pn w / a."""
     rows = dict(zip(D_COLUMNS, Q, strict=True))
     rows["contact_pressure"] = np.array([0.0, -2 * contact.normal / a, 0.0, 0.0, 0.0, 0.0])
     return {name: rows[name] for name in COLUMNS}

@@ -51,7 +51,7 @@ def glued_blocks(
     stress: tuple[float, float, float] = (0.0, 0.0, 0.0),
     gravity: tuple[float, float] = (0.0, 0.0),
 ) -> BlockSystem:
-    """Blocks glued along all edges they share, under loads on their outline.
+    """Return blocks glued along all edges they share, under loads on their outline.
 
     Parameters
     ----------
@@ -161,7 +161,7 @@ class GluedBlocks:
         return self.rest[:, 3:]
 
     def observer(self, start: Point, end: Point) -> Array:
-        """The rows of the mean displacement in x and y of a part of the outline, or of a point, (2, 6 blocks).
+        """Return the rows of the mean displacement in x and y of a part of the outline, or of a point, (2, 6 blocks).
 
         A block of one strain moves its edges linearly: the mean is that of the middle. A ValueError if nothing lies
         there.
@@ -178,7 +178,7 @@ class GluedBlocks:
         return rows.reshape(2, -1)
 
     def modes(self, scheme: Scheme, count: int) -> tuple[Mode, ...]:
-        """The lowest modes that are no rigid motion, in rising order, their shares of the static response."""
+        """Return the lowest modes that are no rigid motion, in rising order, their shares of the static response."""
         equations = self.statics
         squares, shapes, _ = equations.lowest(count)
         z, _ = equations.at_rest(equations.F, np.zeros(len(equations.pressure)))
@@ -186,7 +186,7 @@ class GluedBlocks:
         return modes_of(scheme, np.sqrt(squares), shares, 0 * shares)
 
     def history(self, scheme: Scheme, steps: int, rows: Array) -> Result:
-        """What some rows observe of the blocks from rest, at each step.
+        """Return what some rows observe of the blocks from rest, at each step.
 
         Parameters
         ----------
@@ -202,7 +202,7 @@ class GluedBlocks:
 
 
 def _without_rigid_motion(system: BlockSystem) -> Equations:
-    """A free system's equations with the condition R' M D = 0."""
+    """Return a free system's equations with the condition R' M D = 0."""
     from scipy.sparse import block_diag, csr_array, vstack
 
     equations = system.equations

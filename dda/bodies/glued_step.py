@@ -156,7 +156,7 @@ class StageSolver:
 
 
 def shortened(stage: Stage, gg: float, ratio: float) -> Stage:
-    """The numbers of a stage of a shorter step, for a state in units of the whole one."""
+    """Return the numbers of a stage of a shorter step, for a state in units of the whole one."""
     by_velocity = {name: ratio * getattr(stage, name) for name in ("d_u", "d_g", "g_0", "g_g", "delta")}
     by_acceleration = {name: ratio * ratio * getattr(stage, name) for name in ("e_0", "e_g", "alpha")}
     return stage._replace(gg=gg**ratio, **by_velocity, **by_acceleration)
@@ -172,7 +172,7 @@ def glued_march(
     energies: bool,
     steps: int,
 ) -> March:
-    """The march of so many steps of glued blocks under loads of a size, whose energies are kept too if asked for.
+    """Return the march of so many steps of glued blocks under loads of a size, whose energies are kept too if asked for.
 
     Parameters
     ----------
@@ -226,7 +226,7 @@ def glued_march(
 
 
 def start_state(glue: Glue, opening: Array, velocity: Array, moved: Array) -> GluedState:
-    """The state at t = 0: unstrained, without contact force.
+    """Return the state at t = 0: unstrained, without contact force.
 
     `opening` is that of the rows [m], (m,), `velocity` that of the modes, (n,). What is fixed has `moved` by (x, y),
     which stretches the glue [m].
@@ -341,7 +341,7 @@ def add_bulk_loss(march: March, state: GluedState, after: GluedState, part: Part
 
 
 def strain_energy(glue: Glue, z: Array, force: Array) -> float:
-    """That of blocks and glue, z' k z / 2 + mu' C mu / 2 [J]."""
+    """Return that of blocks and glue, z' k z / 2 + mu' C mu / 2 [J]."""
     return float(z @ (glue.k * z) + force @ (glue.C @ force)) / 2 / glue.scheme.step**2
 
 

@@ -78,7 +78,7 @@ class Gaps(NamedTuple):
 
 
 def gap_groups(blocks: Sequence[Block], joints: Sequence[Joint]) -> list[Gaps]:
-    """The gaps of all joints in groups that do not share a spring."""
+    """Return the gaps of all joints in groups that do not share a spring."""
     springs = _springs_at_points(joints)
     busy = {spring for met in springs if len(met) > 1 for spring in met}
     groups = [_plain(blocks, joint) for j, joint in enumerate(joints) if not {(j, 0), (j, 1)} & busy]
@@ -90,7 +90,7 @@ def gap_groups(blocks: Sequence[Block], joints: Sequence[Joint]) -> list[Gaps]:
 
 
 def _springs_at_points(joints: Sequence[Joint]) -> list[list[End]]:
-    """The springs (joint, end) that share a point, a list for each point."""
+    """Return the springs (joint, end) that share a point, a list for each point."""
     points = np.array([place for joint in joints for place in (joint.start, joint.end)]).reshape(-1, 2)
     if not len(points):
         return []
@@ -106,7 +106,7 @@ def _springs_at_points(joints: Sequence[Joint]) -> list[list[End]]:
 
 
 def _plain(blocks: Sequence[Block], joint: Joint) -> Gaps:
-    """The four gaps of a joint of its own: means (t, n) and differences (n, t) of its ends."""
+    """Return the four gaps of a joint of its own: means (t, n) and differences (n, t) of its ends."""
     start = np.array(joint.start)
     end = np.array(joint.end)
     bodies = {}
@@ -118,7 +118,7 @@ def _plain(blocks: Sequence[Block], joint: Joint) -> Gaps:
 
 
 def _meeting(blocks: Sequence[Block], joints: Sequence[Joint], met: list[End]) -> Gaps:
-    """The gaps where springs meet in a point: the vector across each branch of a spanning tree."""
+    """Return the gaps where springs meet in a point: the vector across each branch of a spanning tree."""
     met = sorted(met, key=lambda s: -(joints[s[0]].normal + joints[s[0]].shear))
     springs = [joints[j] for j, _ in met]
     bodies = list(dict.fromkeys(body for joint in springs for body in (joint.first, joint.second)))
@@ -144,7 +144,7 @@ def _meeting(blocks: Sequence[Block], joints: Sequence[Joint], met: list[End]) -
 
 
 def _value(blocks: Sequence[Block], body: int, point: Array) -> Array:
-    """The displacement of a body at a point by its unknowns, rounded zeros made exact."""
+    """Return the displacement of a body at a point by its unknowns, rounded zeros made exact."""
     if body == FIXED:
         return np.eye(2)
     block = blocks[body]
@@ -153,7 +153,7 @@ def _value(blocks: Sequence[Block], body: int, point: Array) -> Array:
 
 
 def _gradient(body: int, along: Array) -> Array:
-    """The change of a body's displacement over a distance by its unknowns."""
+    """Return the change of a body's displacement over a distance by its unknowns."""
     if body == FIXED:
         return np.zeros((2, 2))
     rows = displacement_rows(*along)
@@ -164,7 +164,7 @@ def _gradient(body: int, along: Array) -> Array:
 def common_part(
     edge: Sequence[Sequence[float]], other: Sequence[Sequence[float]], slack: float
 ) -> tuple[Point, Point] | None:
-    """The ends of what an edge shares with another one on its line, in its own direction.
+    """Return the ends of what an edge shares with another one on its line, in its own direction.
 
     The other one may lie beside the line by `slack`; what is shorter is none [m].
     """
@@ -187,7 +187,7 @@ def common_part(
 
 
 def shared_edges(blocks: Sequence[Block], normal: float, shear: float) -> list[Joint]:
-    """A joint for every piece of boundary of positive length that two blocks share.
+    """Return a joint for every piece of boundary of positive length that two blocks share.
 
     Parameters
     ----------

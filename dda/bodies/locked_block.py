@@ -121,7 +121,7 @@ def _check_adaptive(model: TwoBlockModel, scheme: Scheme, floor: float) -> None:
 
 
 def _why_stepped(model: TwoBlockModel, scheme: Scheme, modal: ModalForm, full: bool, floor: float | None) -> str | None:
-    """Why the history is stepped, in words; None where it is blocked."""
+    """Return why the history is stepped, in words; None where it is blocked."""
     if floor is not None:
         return f"self-adaptive damping, discount at least {floor:g}"
     if full:
@@ -132,7 +132,7 @@ def _why_stepped(model: TwoBlockModel, scheme: Scheme, modal: ModalForm, full: b
 
 
 def modal_histories(scheme: Scheme, modal: ModalForm, rows: Array, steps: int, blocked: bool) -> Array:
-    """The columns of every step from rest under 1 Pa, (columns, steps); `rows` observe the modes."""
+    """Return the columns of every step from rest under 1 Pa, (columns, steps); `rows` observe the modes."""
     if not blocked:
         return rows @ stepped_modes(scheme, modal.frequencies, modal.load, steps)
     static = modal.load / modal.frequencies / modal.frequencies

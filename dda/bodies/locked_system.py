@@ -86,7 +86,7 @@ def stepped(
 
 
 def observed_steps(march: March, motion: BaseMotion | None, steps: int) -> Array:
-    """What is observed of every step from rest, (columns, steps)."""
+    """Return what is observed of every step from rest, (columns, steps)."""
     moved = np.zeros(2) if motion is None else motion.at([0.0])[0]
     history, _ = run_glued(march, course_of(motion, 0.0), steps, np.zeros(0), 0 * march.method.k, moved)
     return history.motion[1:].T.copy()

@@ -53,7 +53,7 @@ class OpeningBlock:
 
 
 def opening_block(model: LoadedBlock, velocity: float = 0.0, full: bool = False) -> OpeningBlock:
-    """One block over corners that open; `velocity` only tells what moves, `full` keeps all unknowns."""
+    """Return one block over corners that open; `velocity` only tells what moves, `full` keeps all unknowns."""
     block = model.block
     load = model.load
     tangent, normal, a = base_directions(block, model.base)
@@ -117,7 +117,7 @@ def opening_block(model: LoadedBlock, velocity: float = 0.0, full: bool = False)
 
 
 def start_of(block: OpeningBlock, scheme: Scheme, gap: float, velocity: float, at_once: bool = False) -> State:
-    """The state at t = 0: unstrained, without contact force, at the starting gap, with a velocity upwards [m/s].
+    """Return the state at t = 0: unstrained, without contact force, at the starting gap, with a velocity upwards [m/s].
 
     The block starts with the acceleration of its load `at_once`, or else as the scheme says.
     """
@@ -132,12 +132,12 @@ def start_of(block: OpeningBlock, scheme: Scheme, gap: float, velocity: float, a
 
 
 def unknowns_of(block: OpeningBlock, history: History, motion: BaseMotion | None, step: float) -> Array:
-    """The unknowns from t = 0 on, measured from the base, (n, steps + 1)."""
+    """Return the unknowns from t = 0 on, measured from the base, (n, steps + 1)."""
     return np.array([observed(block, row, history, motion, step) for row in np.eye(len(block.shapes))])
 
 
 def observed(block: OpeningBlock, row: Array, history: History, motion: BaseMotion | None, step: float) -> Array:
-    """What a row over the unknowns observes from t = 0 on, measured from the base, (steps + 1,)."""
+    """Return what a row over the unknowns observes from t = 0 on, measured from the base, (steps + 1,)."""
     c = block.contacts
     read = row @ block.read
     total = history.motion[:, : len(block.shapes)] @ (row @ block.shapes) + history.opening @ read

@@ -111,7 +111,7 @@ class OpeningSystem:
 def opening_subdivided(
     model: UnilateralModel, columns: int, rows: int, glue: float, pattern: Pattern = "squares"
 ) -> OpeningSystem:
-    """The block over corners that open, cut into sub-blocks; see `dda.subdivided` for parameters and errors."""
+    """Return the block over corners that open, cut into sub-blocks; see `dda.subdivided` for parameters and errors."""
     load = replace(model.load, motion=None)
     locked = TwoBlockModel(model.block, Contact(1.0), load, model.base, model.top)
     cut = subdivided(locked, columns, rows, glue, pattern)

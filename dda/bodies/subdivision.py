@@ -23,7 +23,7 @@ SLIVER = 1e-9  # of the base: how far the pressed part may lie beside an edge, a
 
 
 def subdivided(model: TwoBlockModel, columns: int, rows: int, glue: float, pattern: Pattern = "squares") -> BlockSystem:
-    """The two-block model with its block cut into sub-blocks.
+    """Return the two-block model with its block cut into sub-blocks.
 
     The unit square, cut into columns x rows squares (each cut once more from its lower left to its
     upper right corner for `pattern` "triangles"), is mapped bilinearly onto the block, its lower
@@ -82,7 +82,7 @@ def subdivided(model: TwoBlockModel, columns: int, rows: int, glue: float, patte
 
 
 def base_share(length: float, a: float) -> float:
-    """The share of the corner springs' stiffness that each end of a base edge of some length carries."""
+    """Return the share of the corner springs' stiffness that each end of a base edge of some length carries."""
     return length / a
 
 
@@ -100,7 +100,7 @@ def _check(model: TwoBlockModel, columns: int, rows: int, glue: float, pattern: 
 
 
 def _corner_map(model: TwoBlockModel, columns: int, rows: int) -> Callable[[Corner], Point]:
-    """The map from a corner's numbers (i, j) to its place [m]."""
+    """Return the map from a corner's numbers (i, j) to its place [m]."""
     a, b, c, d = np.roll(model.block.corners, -model.base, axis=0)
 
     @functools.cache  # a corner belongs to several sub-blocks
@@ -116,7 +116,7 @@ def _corner_map(model: TwoBlockModel, columns: int, rows: int) -> Callable[[Corn
 
 
 def _cells(columns: int, rows: int, pattern: Pattern) -> list[tuple[Corner, ...]]:
-    """The corners of every sub-block, counter-clockwise."""
+    """Return the corners of every sub-block, counter-clockwise."""
     cells: list[tuple[Corner, ...]] = []
     for j in range(rows):
         for i in range(columns):
@@ -129,6 +129,6 @@ def _cells(columns: int, rows: int, pattern: Pattern) -> list[tuple[Corner, ...]
 
 
 def _on_side(start: Corner, end: Corner, side: int, columns: int, rows: int) -> bool:
-    """Whether an edge lies on a side of the block, counted from the base."""
+    """Tell whether an edge lies on a side of the block, counted from the base."""
     axis, value = ((1, 0), (0, columns), (1, rows), (0, 0))[side]
     return start[axis] == end[axis] == value

@@ -93,7 +93,7 @@ class TwoBlockModel(LoadedBlock):
 
 
 def carried(motion: BaseMotion | None, instants: ArrayLike) -> Columns:
-    """What a moving base adds to the columns: its own displacement [m]."""
+    """Return what a moving base adds to the columns: its own displacement [m]."""
     if motion is None:
         return {}
     moved = motion.at(instants)

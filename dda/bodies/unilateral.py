@@ -225,7 +225,7 @@ def solve_unilateral(
 
 
 def column(model: UnilateralModel, block: OpeningBlock, history: History, name: str, step: float) -> Array:
-    """A column of every step."""
+    """Return a column of every step."""
     if name == "contact_pressure":
         return np.asarray(history.force[1:, : block.contacts].sum(axis=1) / model.base_length + 0.0)
     row = block.observers[name]
@@ -240,7 +240,7 @@ def energies(
     history: History,
     rule: str,
 ) -> Columns:
-    """The energies [J] after every step, the losses summed from t = 0 on.
+    """Return the energies [J] after every step, the losses summed from t = 0 on.
 
     They are those of `dda.march.energy`, with "dashpot" or "impact" where contact has one. Energy-conserving contact
     does the work U0 - U1 itself and loses nothing.
@@ -310,5 +310,5 @@ def requirements(model: Any, scheme: Scheme, options: UnilateralOptions) -> Iter
 
 
 def frictionless(law: Unilateral, options: UnilateralOptions) -> bool:
-    """Whether contact has no forces along the base, whatever its law has."""
+    """Tell whether contact has no forces along the base, whatever its law has."""
     return bool(law.damping) or options.rule in LOOPS

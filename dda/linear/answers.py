@@ -71,7 +71,7 @@ class Mode:
 
 
 def static(body: LinearBody) -> dict[str, float]:
-    """The value of every column at rest under the constant loads, on the base's last position."""
+    """Return the value of every column at rest under the constant loads, on the base's last position."""
     system = body.reached
     by_unknowns, by_force = system.rows(body.names)
     last = np.zeros(2) if body.motion is None else body.motion.at([math.inf])[0]
@@ -80,7 +80,7 @@ def static(body: LinearBody) -> dict[str, float]:
 
 
 def modes(body: LinearBody, scheme: Scheme, count: int = 12, full: bool = False) -> tuple[Mode, ...]:
-    """Modes, the largest static share first, with what a step of the scheme does to each.
+    """Return modes, the largest static share first, with what a step of the scheme does to each.
 
     Where the base alone acts the load is the inertia of its unit acceleration.
 
@@ -108,7 +108,7 @@ def modes(body: LinearBody, scheme: Scheme, count: int = 12, full: bool = False)
 
 
 def modes_of(scheme: Scheme, frequencies: Array, shares: Array, carried: Array) -> tuple[Mode, ...]:
-    """Modes with what a step of the scheme does to each."""
+    """Return modes with what a step of the scheme does to each."""
     rows = zip(frequencies.tolist(), shares.tolist(), carried.tolist(), strict=True)
     return tuple(Mode(w, share, scalar_eigenvalues(scheme, w), pressure) for w, share, pressure in rows)
 
@@ -121,7 +121,7 @@ def response(
     along: tuple[float, float] | None = None,
     exact: bool = False,
 ) -> dict[str, Complex]:
-    """The complex amplitudes of the columns, (K - W2 M) D = F.
+    """Return the complex amplitudes of the columns, (K - W2 M) D = F.
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ def _check_along(moving: Array, along: tuple[float, float]) -> None:
 
 
 def highest_frequency(body: LinearBody) -> float:
-    """The highest natural frequency that a load reaches [rad/s], which limits an explicit scheme.
+    """Return the highest natural frequency that a load reaches [rad/s], which limits an explicit scheme.
 
     Raises
     ------
@@ -170,7 +170,7 @@ def highest_frequency(body: LinearBody) -> float:
 
 
 def scalar_eigenvalues(scheme: Scheme, frequency: float) -> tuple[complex, complex]:
-    """The two non-zero eigenvalues of one step of a mode, the larger modulus first.
+    """Return the two non-zero eigenvalues of one step of a mode, the larger modulus first.
 
     The step is applied to the unit states of (D, dt V) with the acceleration that equilibrium
     gives them, A = -w^2 D - (a0 + a1 w^2) V, which every step but the first starts from. Of schemes by their stages

@@ -46,7 +46,7 @@ class _Space:
         self.closed = self.size == 0
 
     def observed(self, z: Array, force: Array) -> Array:
-        """Modes, and what is observed of them and of the joint forces."""
+        """Return modes, and what is observed of them and of the joint forces."""
         return np.concatenate([z, self.rows[0] @ z + self.rows[1] @ force])
 
     def grow(self) -> None:
@@ -78,7 +78,7 @@ class _Space:
                 return amplitudes, resolved & ~lost
 
     def answer(self, W2: Complex) -> tuple[Complex, NDArray[np.bool_], NDArray[np.bool_]]:
-        """The observed amplitudes, (rows, frequencies), which are resolved, and which are rounding."""
+        """Return the observed amplitudes, (rows, frequencies), which are resolved, and which are rounding."""
         from scipy.linalg import eigh_tridiagonal
 
         m = len(self.diagonal)
@@ -95,7 +95,7 @@ class _Space:
 
 
 def amplitudes(equations: Any, rows: ArrayPair, F: Array, g: Array, W2: Complex) -> Complex:
-    """What rows of z and of lambda observe where (K - W2) z = F, (rows, frequencies).
+    """Return what rows of z and of lambda observe where (K - W2) z = F, (rows, frequencies).
 
     The equations are the `Equations` of `dda.bodies.block_system`, with B z - C lambda = g.
     """

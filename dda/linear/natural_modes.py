@@ -13,7 +13,7 @@ _SWEEPS = 40  # Jacobi's method converges quadratically: six unknowns take about
 
 
 def graded_modes(M: Array, K: Array) -> ArrayPair:
-    """The frequencies w and mass-normalised shapes of K phi = w^2 M phi, K a positive diagonal.
+    """Return the frequencies w and mass-normalised shapes of K phi = w^2 M phi, K a positive diagonal.
 
     With a diagonal K the problem is that of G = K^-1/2 M K^-1/2, whose eigenvalues are 1 / w^2.
     Jacobi's rotations find each of them, and each component of the shapes, to full relative
@@ -45,7 +45,7 @@ def free_modes(M: Array, K: Array) -> ArrayPair:
 
 
 def _jacobi(matrix: Array) -> ArrayPair:
-    """Eigenvalues and eigenvectors of a positive definite matrix by cyclic rotations."""
+    """Return eigenvalues and eigenvectors of a positive definite matrix by cyclic rotations."""
     A = matrix.copy()
     V = np.eye(len(A))
     pairs = list(combinations(range(len(A)), 2))

@@ -17,7 +17,7 @@ from dda.model.polygon import Section, checked_polygon, section
 
 
 def displacement_rows(x: float, y: float) -> Array:
-    """The 2 x 6 matrix of eq. (3) at a place from the centroid [m]."""
+    """Return the 2 x 6 matrix of eq. (3) at a place from the centroid [m]."""
     return np.array([[1.0, 0.0, -y, x, 0.0, y / 2], [0.0, 1.0, x, 0.0, y, x / 2]])
 
 
@@ -39,7 +39,7 @@ class Block:
 
     @classmethod
     def rectangle(cls, width: float, height: float, material: Material) -> Block:
-        """The upright rectangle with its lower left corner at the origin (sides in m)."""
+        """Return the upright rectangle with its lower left corner at the origin (sides in m)."""
         return cls([[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]], material)
 
     @property
@@ -65,7 +65,7 @@ class Block:
         return self.material.density * self.section.area
 
     def edge(self, index: int) -> ArrayPair:
-        """The two ends of edge `index`, from corner `index` to the next one [m]; a ValueError if there is none."""
+        """Return the two ends of edge `index`, from corner `index` to the next one [m]; a ValueError if there is none."""
         n = len(self.corners)
         if not 0 <= index < n:
             raise ValueError(f"edge: must be between 0 and {n - 1}, got {index!r}")
@@ -81,13 +81,13 @@ class Block:
             raise ValueError(f"top: must differ from base, got {top!r}")
 
     def T(self, x: float, y: float) -> Array:
-        """The 2 x 6 displacement matrix of eq. (3) at the point (x, y) [m]."""
+        """Return the 2 x 6 displacement matrix of eq. (3) at the point (x, y) [m]."""
         X = x - self.section.centroid[0]
         Y = y - self.section.centroid[1]
         return displacement_rows(X, Y)
 
     def mass(self) -> Array:
-        """The 6 x 6 inertia matrix, eq. (15), (16) with (3,6) and (6,6) corrected.
+        """Return the 6 x 6 inertia matrix, eq. (15), (16) with (3,6) and (6,6) corrected.
 
         Entry (3,6) is rho (s1 - s2)/2 and (6,6) is rho (s1 + s2)/4.
         """
@@ -106,17 +106,17 @@ class Block:
         return self.material.density * M
 
     def elastic(self) -> Array:
-        """The 6 x 6 elastic matrix s E, eq. (21) with its missing modulus [N/m, N, N m]."""
+        """Return the 6 x 6 elastic matrix s E, eq. (21) with its missing modulus [N/m, N, N m]."""
         K = np.zeros((6, 6))
         K[3:, 3:] = self.section.area * self.material.elasticity()
         return K
 
     def edge_load(self, edge: int, traction: tuple[float, float]) -> Array:
-        """The 6 loads of a uniform traction (Fx, Fy) [Pa] on an edge, eq. (29)."""
+        """Return the 6 loads of a uniform traction (Fx, Fy) [Pa] on an edge, eq. (29)."""
         return self.segment_load(*self.edge(edge), traction)
 
     def segment_load(self, start: Array, end: Array, traction: tuple[float, float]) -> Array:
-        """The 6 loads of a uniform traction (Fx, Fy) [Pa] between two points [m]."""
+        """Return the 6 loads of a uniform traction (Fx, Fy) [Pa] between two points [m]."""
         x, y = start + (end - start) / 2
         force = float(np.hypot(*(end - start))) * np.array(traction)
         load: Array = self.T(float(x), float(y)).T @ force

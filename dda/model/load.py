@@ -38,23 +38,23 @@ class BaseMotion:
             raise ValueError("time: must increase from instant to instant, got a repeated or decreasing one")
 
     def at(self, instants: ArrayLike) -> Array:
-        """The displacement at given instants, (len(instants), 2) [m]."""
+        """Return the displacement at given instants, (len(instants), 2) [m]."""
         times, record, requested = (np.asarray(part, float) for part in (self.time, self.displacement, instants))
         return np.column_stack([np.interp(requested, times, column) for column in record.T])
 
     def velocity(self, instants: ArrayLike) -> Array:
-        """The velocity at given instants between those of the record, (len(instants), 2) [m/s]."""
+        """Return the velocity at given instants between those of the record, (len(instants), 2) [m/s]."""
         slopes = np.diff(np.asarray(self.displacement, float), axis=0) / np.diff(self.time)[:, None]
         rest = np.zeros((1, 2))
         return np.concatenate([rest, slopes, rest])[np.searchsorted(self.time, instants)]
 
     def along(self, axes: Array) -> BaseMotion:
-        """The motion along two axes, the rows of a matrix."""
+        """Return the motion along two axes, the rows of a matrix."""
         return BaseMotion(self.time, np.asarray(self.displacement, float) @ axes.T)
 
 
 def directions_of(motion: BaseMotion | None) -> Array:
-    """Whether a base moves in x and in y, 1 or 0 each, (2,): in neither without a motion."""
+    """Return whether a base moves in x and in y, 1 or 0 each, (2,): in neither without a motion."""
     moved = np.zeros((1, 2)) if motion is None else np.asarray(motion.displacement, float)
     return np.asarray(np.any(moved != 0, axis=0), float)
 
@@ -85,12 +85,12 @@ class Load:
         return falling(self.slope)
 
     def size(self, weight: float) -> float:
-        """The largest of the constant loads as a stress [Pa]; `weight` is that of gravity, rho h."""
+        """Return the largest of the constant loads as a stress [Pa]; `weight` is that of gravity, rho h."""
         return max(abs(self.pressure), abs(self.traction), abs(weight * self.gravity))
 
 
 def load_share(ramp: float, time: float) -> float:
-    """The share of the loads that acts at a time, min(1, t / ramp); all of them at once without a ramp."""
+    """Return the share of the loads that acts at a time, min(1, t / ramp); all of them at once without a ramp."""
     return 1.0 if time >= ramp else time / ramp
 
 
@@ -101,13 +101,13 @@ def at_once(load: Load, what: str) -> None:
 
 
 def falling(slope: float) -> tuple[float, float]:
-    """The direction of gravity on a slope [deg]."""
+    """Return the direction of gravity on a slope [deg]."""
     angle = math.radians(slope)
     return math.sin(angle), -math.cos(angle)
 
 
 def pressed_part(start: Array, end: Array, eccentricity: float) -> ArrayPair:
-    """The ends of the pressed part of the top edge.
+    """Return the ends of the pressed part of the top edge.
 
     It is the longest part whose middle lies `eccentricity` from the middle of the edge, towards +x (towards +y on a
     vertical edge): the length is L - 2 |eccentricity|, the pressure is the same. A ValueError if nothing is left of the
@@ -169,7 +169,7 @@ class LoadedBlock:
         pressed_part(*self.block.edge(self.top), self.load.eccentricity)
 
     def __getattr__(self, name: str) -> Any:
-        """A field of the loads, which is read as one of the model too."""
+        """Return a field of the loads, which is read as one of the model too."""
         if name in Load.__dataclass_fields__:
             return getattr(self.load, name)
         raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")

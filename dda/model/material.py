@@ -67,7 +67,7 @@ class Material:
         return mu if self.hypothesis == "plane stress" else mu / (1 - mu)
 
     def elasticity(self) -> NDArray[np.float64]:
-        """The 3 x 3 matrix of stress over strain (sx, sy, txy) = C (ex, ey, gxy) [Pa].
+        """Return the 3 x 3 matrix of stress over strain (sx, sy, txy) = C (ex, ey, gxy) [Pa].
 
         Eq. (21) with its missing factor E / (1 - mu^2).
         """

@@ -55,7 +55,7 @@ def area_integrals(vertices: Array) -> AreaIntegrals:
 
 
 def section(vertices: Array) -> Section:
-    """Area, centroid and central moments, evaluated about a local origin.
+    """Return area, centroid and central moments, evaluated about a local origin.
 
     The corners are shifted by the first corner, then by the centroid, so that a block
     far from the origin keeps the digits that its coordinates hold.
@@ -69,7 +69,7 @@ def section(vertices: Array) -> Section:
 
 
 def checked_polygon(vertices: ArrayLike) -> Array:
-    """The corners as a read-only (n, 2) array of a simple counter-clockwise polygon.
+    """Return the corners as a read-only (n, 2) array of a simple counter-clockwise polygon.
 
     Raises
     ------
@@ -90,7 +90,7 @@ def checked_polygon(vertices: ArrayLike) -> Array:
 
 
 def _fault(local: Array) -> str | None:
-    """What keeps corners, relative to the first, from being a simple counter-clockwise polygon."""
+    """Return what keeps corners, relative to the first, from being a simple counter-clockwise polygon."""
     if not np.all(np.any(np.roll(local, -1, axis=0) != local, axis=1)):
         return "consecutive corners must differ"
     if _touches_itself(local):
@@ -99,13 +99,13 @@ def _fault(local: Array) -> str | None:
 
 
 def _orientation(a: Array, b: Array, c: Array) -> Array:
-    """The sign of the turn a-b-c, zero on a line."""
+    """Return the sign of the turn a-b-c, zero on a line."""
     turn = (b[..., 0] - a[..., 0]) * (c[..., 1] - a[..., 1]) - (b[..., 1] - a[..., 1]) * (c[..., 0] - a[..., 0])
     return np.sign(turn)
 
 
 def _touches_itself(points: Array) -> bool:
-    """Whether two edges meet anywhere but in the corner that neighbours share."""
+    """Tell whether two edges meet anywhere but in the corner that neighbours share."""
     n = len(points)
     following = np.roll(points, -1, axis=0)
     i, j = np.triu_indices(n, 1)

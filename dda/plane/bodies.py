@@ -75,7 +75,7 @@ class Poses(NamedTuple):
 
 
 def blocks_of(outlines: list[Block], rigid: list[bool], fixed: list[bool], motion: list[int]) -> tuple[Blocks, Array]:
-    """The numbers of blocks, and the squares of the frequencies of all modes."""
+    """Return the numbers of blocks, and the squares of the frequencies of all modes."""
     b = len(outlines)
     modes = np.array([0 if held else RIGID if stiff else 2 * RIGID for held, stiff in zip(fixed, rigid, strict=True)])
     corners = [len(block.corners) for block in outlines]
@@ -119,13 +119,13 @@ def blocks_of(outlines: list[Block], rigid: list[bool], fixed: list[bool], motio
 
 
 def as_complex(points: Any) -> Points:
-    """Points (n, 2) as complex numbers."""
+    """Return points (n, 2) as complex numbers."""
     x, y = np.asarray(points, dtype=float).reshape(-1, 2).T
     return x + 1j * y
 
 
 def poses_of(blocks: int) -> Poses:
-    """Room for the poses of blocks."""
+    """Return room for the poses of blocks."""
     spin, stretch, J = np.ones((3, blocks))
     return Poses(spin + 0j, spin, stretch, np.zeros((blocks, 3)), J, np.zeros((blocks, 3)))
 
@@ -134,7 +134,7 @@ def poses_of(blocks: int) -> Poses:
 
 
 def row_times(row: Vector, x: Vector, first: int, n: int) -> float:
-    """The sum of the first n products of a row and a part of a vector."""
+    """Return the sum of the first n products of a row and a part of a vector."""
     total = 0.0
     for e in range(n):
         total += row[e] * x[first + e]
@@ -250,19 +250,19 @@ def strained(poses: Poses, i: int, z: complex) -> complex:
 
 
 def point(poses: Poses, i: int, z: complex) -> complex:
-    """Where a point of a block is from its centroid, for the poses of an end [m]."""
+    """Return where a point of a block is from its centroid, for the poses of an end [m]."""
     turned: complex = poses.turn[i] * strained(poses, i, z)
     return turned
 
 
 def place_of(blocks: Blocks, q: Matrix, D: Matrix, ends: Poses, i: int, z: complex) -> complex:
-    """Where a point of a block is after increments D, for the poses there [m]."""
+    """Return where a point of a block is after increments D, for the poses there [m]."""
     centroid: complex = blocks.centroid[i] + complex(q[i][0] + D[i][0], q[i][1] + D[i][1])
     return centroid + point(ends, i, z)
 
 
 def moved(poses: Poses, i: int, D: Vector, z: complex) -> complex:
-    """How far a step by D moves a point, for the poses of its chord [m]."""
+    """Return how far a step by D moves a point, for the poses of its chord [m]."""
     turn = poses.spin[i] * D[2]
     stretch = poses.stretch[i]
     U = strained(poses, i, z)

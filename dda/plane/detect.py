@@ -80,7 +80,7 @@ class Detection(NamedTuple):
 
 
 def detection_of(polygons: Sequence[Points], moves: Any, law: Any, most: int, size: float) -> Detection:
-    """What finds contacts of blocks with these corners, at most so many.
+    """Return what finds contacts of blocks with these corners, at most so many.
 
     The number of the law of two blocks, (b, b), is -1 where they are not looked at; if neither moves they are not.
     """
@@ -104,7 +104,7 @@ def detection_of(polygons: Sequence[Points], moves: Any, law: Any, most: int, si
 
 
 def found_contacts(most: int) -> FoundContacts:
-    """Room for so many contacts."""
+    """Return room for so many contacts."""
     numbers = ("gap", "normal")
     return FoundContacts(*(np.zeros(most, float if name in numbers else np.int64) for name in FoundContacts._fields))
 
@@ -180,7 +180,7 @@ def find_contacts(detection: Detection) -> int:
 
 
 def pair_of(detection: Detection, corner: int, other: int) -> int:
-    """The number of the two blocks that have these corners, in either order."""
+    """Return the number of the two blocks that have these corners, in either order."""
     i = detection.corners.block[corner]
     j = detection.corners.block[other]
     return int(min(i, j) * len(detection.moves) + max(i, j))
@@ -375,7 +375,7 @@ def add_points(detection: Detection, p: int, r: int, edge: int, point: int, deep
 
 
 def is_over(corners: Corners, start: int, end: int, length: float, along: float, slack: float, margin: float) -> bool:
-    """Whether a corner lies over an edge, also over what goes on from it where its outline turns inwards.
+    """Tell whether a corner lies over an edge, also over what goes on from it where its outline turns inwards.
 
     A corner in a notch that is pressed into one of its edges has left the other by as much, and is still held by it.
     """
@@ -385,7 +385,7 @@ def is_over(corners: Corners, start: int, end: int, length: float, along: float,
 
 
 def is_known(detection: Detection, found: int, corner: int, edge: int) -> bool:
-    """Whether other parts of two blocks have that contact already, or one of the other's corners at its place."""
+    """Tell whether other parts of two blocks have that contact already, or one of the other's corners at its place."""
     corners = detection.corners
     contacts = detection.contacts
     near = 2 * SAME * detection.size
@@ -401,7 +401,7 @@ def is_known(detection: Detection, found: int, corner: int, edge: int) -> bool:
 
 
 def side_from(sides: Sides, parts: Parts, part: int, corner: int) -> int:
-    """The side of a part that starts from a corner, -1 where there is none."""
+    """Return the side of a part that starts from a corner, -1 where there is none."""
     for side in range(parts.first[part], parts.last[part]):
         if sides.corner[side] == corner:
             return side
@@ -409,7 +409,7 @@ def side_from(sides: Sides, parts: Parts, part: int, corner: int) -> int:
 
 
 def front(places: Points, sides: Sides, parts: Parts, side: int, part: int) -> tuple[float, int]:
-    """How far a part is in front of the edge of a side [m], and from which of its sides' corners."""
+    """Return how far a part is in front of the edge of a side [m], and from which of its sides' corners."""
     start = places[sides.corner[side]]
     along = (places[sides.end[side]] - start).conjugate()
     least = math.inf
@@ -423,7 +423,7 @@ def front(places: Points, sides: Sides, parts: Parts, side: int, part: int) -> t
 
 
 def foot(places: Points, corner: int, start: int, end: int) -> tuple[float, float, float]:
-    """The length of an edge, how far along it a corner is, and its gap [m]."""
+    """Return the length of an edge, how far along it a corner is, and its gap [m]."""
     along = places[end] - places[start]
     apart = along.conjugate() * (places[corner] - places[start])
     length = abs(along)
@@ -431,7 +431,7 @@ def foot(places: Points, corner: int, start: int, end: int) -> tuple[float, floa
 
 
 def cosine_between(places: Points, sides: Sides, first: int, second: int) -> float:
-    """The cosine between two sides."""
+    """Return the cosine between two sides."""
     one = places[sides.end[first]] - places[sides.corner[first]]
     other = places[sides.end[second]] - places[sides.corner[second]]
     return float((one.conjugate() * other).real / (abs(one) * abs(other)))

@@ -48,7 +48,7 @@ class UniformMotion(NamedTuple):
     spin: float  # [rad/s]
 
     def turn(self, time: float) -> complex:
-        """The turn of the polygon, exp(i angle)."""
+        """Return the turn of the polygon, exp(i angle)."""
         return cmath.exp(1j * (self.angle + self.spin * time))
 
 
@@ -79,7 +79,7 @@ class FirstContact(NamedTuple):
 def first_contact(
     A: ArrayLike, B: ArrayLike, motion_A: Sequence[float], motion_B: Sequence[float], until: float
 ) -> FirstContact | None:
-    """The first contact of two polygons in uniform motion, None where there is none until then.
+    """Return the first contact of two polygons in uniform motion, None where there is none until then.
 
     Polygons that touch at t = 0 have their first contact there, whether they part or not.
 
@@ -135,7 +135,7 @@ def first_contact(
 
 
 def overlap(A: Points, B: Points) -> float:
-    """How deep two polygons lie in each other, negative where they are apart [m].
+    """Return how deep two polygons lie in each other, negative where they are apart [m].
 
     It is that of the convex parts that lie deepest, through the edge by which they part soonest.
     """
@@ -147,7 +147,7 @@ def overlap(A: Points, B: Points) -> float:
 
 
 def separation(ring: Points, points: Points) -> float:
-    """The greatest distance that points keep from the line of an edge of a convex ring [m]."""
+    """Return the greatest distance that points keep from the line of an edge of a convex ring [m]."""
     tangents = np.roll(ring, -1) - ring
     gaps = ((points - ring[:, None]) * (tangents / np.abs(tangents)).conj()[:, None]).imag
     return float(np.max(np.min(-gaps, axis=1)))
@@ -162,7 +162,7 @@ class Place(NamedTuple):
     on_b: tuple[int, ...]
 
     def coincides(self, other: Place, near: float) -> bool:
-        """Whether another place is the same one."""
+        """Tell whether another place is the same one."""
         return bool(abs(self.at - other.at) <= 4 * near)
 
 
@@ -212,7 +212,7 @@ class Pairs:
         return float(min(np.min(np.max(bounds, axis=0)), window))
 
     def touching(self, time: float, near: float, block: int) -> list[Place]:
-        """Every corner that lies on an edge; the corners are those of A, block 0, or of B."""
+        """Return every corner that lies on an edge; the corners are those of A, block 0, or of B."""
         places, _ = self.relative(time)
         along = places.real
         origin = self.origin + self.velocity * time if block == 0 else 0.0
@@ -227,17 +227,17 @@ class Pairs:
         return touching
 
     def direction(self, edge: int, time: float) -> float:
-        """The direction of an edge's outward normal against x, the edge by the number of its corner [rad]."""
+        """Return the direction of an edge's outward normal against x, the edge by the number of its corner [rad]."""
         normal = -1j * complex(self.tangents[self.edges.index(edge)])
         return cmath.phase(normal) + self.motion_of_edges.angle + self.motion_of_edges.spin * time
 
     def edges_at(self, corner: int) -> tuple[int, int]:
-        """The two edges of the corners' own polygon that meet in one of its corners."""
+        """Return the two edges of the corners' own polygon that meet in one of its corners."""
         return self.ring[self.ring.index(corner) - 1], corner
 
 
 def touches_at(time: float, A_on_B: Pairs, B_on_A: Pairs, near: float) -> tuple[Touch, ...]:
-    """All places at which two polygons touch; edges that lie on each other are one touch."""
+    """Return all places at which two polygons touch; edges that lie on each other are one touch."""
     places = A_on_B.touching(time, near, 0) + B_on_A.touching(time, near, 1)
     touches = []
     on_edges: list[Place] = []
@@ -264,7 +264,7 @@ def touches_at(time: float, A_on_B: Pairs, B_on_A: Pairs, near: float) -> tuple[
 
 
 def distinct(places: list[Place], near: float) -> list[Place]:
-    """The first of all places that coincide."""
+    """Return the first of all places that coincide."""
     kept: list[Place] = []
     for place in places:
         if not any(place.coincides(other, near) for other in kept):
@@ -273,7 +273,7 @@ def distinct(places: list[Place], near: float) -> list[Place]:
 
 
 def one_normal(direction: float) -> tuple[float, float]:
-    """The interval of one direction, within half a turn of x [rad]."""
+    """Return the interval of one direction, within half a turn of x [rad]."""
     within = math.remainder(direction, 2 * math.pi)
     return within, within
 
@@ -281,7 +281,7 @@ def one_normal(direction: float) -> tuple[float, float]:
 def common_normals(
     time: float, A_on_B: Pairs, B_on_A: Pairs, corner_of_A: int, corner_of_B: int
 ) -> tuple[float, float]:
-    """The directions that are normals, from B to A, of both corners: what their two cones share [rad]."""
+    """Return the directions that are normals, from B to A, of both corners: what their two cones share [rad]."""
     from_B = [A_on_B.direction(edge, time) for edge in B_on_A.edges_at(corner_of_B)]
     from_A = [B_on_A.direction(edge, time) + math.pi for edge in A_on_B.edges_at(corner_of_A)]
     width_of_B = (from_B[1] - from_B[0]) % (2 * math.pi)

@@ -215,7 +215,7 @@ class PlaneModel:
                 self.edge_of(load.block, *load.edge, f"{field}.edge")
 
     def name_of(self, block: int) -> str:
-        """The name of a block, or its number."""
+        """Return the name of a block, or its number."""
         return self.blocks[block].name or f"block {block}"
 
     def edge_of(self, block: int, start: ArrayLike, end: ArrayLike, field: str = "edge") -> int:

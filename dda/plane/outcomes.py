@@ -42,13 +42,13 @@ def unsettled_contacts(
 
 
 def stated_contacts(model: PlaneModel) -> list[PlaneContact]:
-    """The contacts that are stated, then both ends of every bond."""
+    """Return the contacts that are stated, then both ends of every bond."""
     stated = [PlaneContact(part.block, part.corner, part.on, part.edge) for part in model.contacts]
     return stated + [PlaneContact(bond.first, -1, bond.second, -1) for bond in model.bonds for _ in range(2)]
 
 
 def found_contact(march: March, corner: int, edge: int) -> PlaneContact:
-    """A contact that was found, by numbers among all corners, with those of its blocks."""
+    """Return a contact that was found, by numbers among all corners, with those of its blocks."""
     corners = march.method.detection.corners
     block = int(corners.block[corner])
     on = int(corners.block[edge])
@@ -56,7 +56,7 @@ def found_contact(march: March, corner: int, edge: int) -> PlaneContact:
 
 
 def flipping_contacts(march: March, is_cut: bool) -> list[int]:
-    """The contacts whose states change as the search of the stage that failed goes round, by their numbers.
+    """Return the contacts whose states change as the search of the stage that failed goes round, by their numbers.
 
     The search goes on from the states in which it was given up until it comes back to states that it had: those in
     between are gone through for ever. `is_cut`: that step was shorter than dt.
@@ -89,7 +89,7 @@ def flipping_contacts(march: March, is_cut: bool) -> list[int]:
 
 
 def sentence(model: PlaneModel, reached: int, outcome: int, contacts: Sequence[PlaneContact]) -> str:
-    """How a history ended, in words: of one that ends early at which step and by which contacts."""
+    """Return how a history ended, in words: of one that ends early at which step and by which contacts."""
     if outcome == FOUND:
         return OUTCOMES[outcome]
     names = [contact_name(model, contact) for contact in contacts[:NAMED]]
@@ -99,7 +99,7 @@ def sentence(model: PlaneModel, reached: int, outcome: int, contacts: Sequence[P
 
 
 def contact_name(model: PlaneModel, contact: PlaneContact) -> str:
-    """A contact by the names of its blocks."""
+    """Return a contact by the names of its blocks."""
     block = model.name_of(contact.block)
     on = model.name_of(contact.on)
     if contact.corner < 0:

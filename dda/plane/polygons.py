@@ -52,7 +52,7 @@ class Parts(NamedTuple):
 
 
 def turns_of(vertices: Points, ring: Sequence[int]) -> Array:
-    """The sines of the turns at the corners of a ring, positive to the left."""
+    """Return the sines of the turns at the corners of a ring, positive to the left."""
     places = vertices[list(ring)]
     edges = np.roll(places, -1) - places
     products = np.roll(edges, 1).conj() * edges
@@ -60,13 +60,13 @@ def turns_of(vertices: Points, ring: Sequence[int]) -> Array:
 
 
 def without_straight_corners(vertices: Points) -> list[int]:
-    """The corners at which an outline turns."""
+    """Return the corners at which an outline turns."""
     turns = turns_of(vertices, range(len(vertices)))
     return [int(corner) for corner in np.flatnonzero(np.abs(turns) > STRAIGHT)]
 
 
 def convex_parts(vertices: Points) -> list[list[int]]:
-    """Convex parts of a simple counter-clockwise polygon, as rings of its corners.
+    """Return convex parts of a simple counter-clockwise polygon, as rings of its corners.
 
     Ears are cut off, and parts joined again wherever what they make is convex (Hertel and Mehlhorn): at most four times
     as many parts as there must be.
@@ -87,7 +87,7 @@ def _triangles(vertices: Points, ring: list[int]) -> list[list[int]]:
 
 
 def _is_ear(vertices: Points, ring: list[int], number: int) -> bool:
-    """Whether a corner and its neighbours make a triangle that no other corner lies in or on."""
+    """Tell whether a corner and its neighbours make a triangle that no other corner lies in or on."""
     triangle = [ring[number - 1], ring[number], ring[(number + 1) % len(ring)]]
     if turns_of(vertices, triangle)[1] <= 0:
         return False
@@ -99,7 +99,7 @@ def _is_ear(vertices: Points, ring: list[int], number: int) -> bool:
 
 
 def _joined(vertices: Points, parts: list[list[int]]) -> list[list[int]]:
-    """The parts with every cut left out that convexity does not need."""
+    """Return the parts with every cut left out that convexity does not need."""
     for start, end in list(_rings_by_side(parts)):
         rings = _rings_by_side(parts)
         left = rings.get((start, end))
@@ -115,12 +115,12 @@ def _joined(vertices: Points, parts: list[list[int]]) -> list[list[int]]:
 
 
 def _rings_by_side(parts: list[list[int]]) -> dict[tuple[int, int], list[int]]:
-    """The ring of every side, by the corners at which it starts and ends."""
+    """Return the ring of every side, by the corners at which it starts and ends."""
     return {(ring[number - 1], ring[number]): ring for ring in parts for number in range(len(ring))}
 
 
 def outlines(polygons: Sequence[Points]) -> tuple[Corners, Sides, Parts]:
-    """Corners, sides and convex parts of blocks with these corners."""
+    """Return corners, sides and convex parts of blocks with these corners."""
     places = np.concatenate(polygons)
     sizes = [len(vertices) for vertices in polygons]
     start = np.cumsum([0, *sizes[:-1]])

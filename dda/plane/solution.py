@@ -168,7 +168,7 @@ def check_scheme(model: PlaneModel, scheme: Scheme) -> None:
 
 
 def plane_march(model: PlaneModel, scheme: Scheme, every: int) -> March:
-    """The march of a model."""
+    """Return the march of a model."""
     parts = model.blocks
     ramps = ramps_of(model)
     driven = [i for i, part in enumerate(parts) if part.motion is not None]
@@ -234,7 +234,7 @@ def plane_march(model: PlaneModel, scheme: Scheme, every: int) -> March:
 
 
 def state_of(modes: int, blocks: int, opening: Array) -> PlaneState:
-    """A state at rest."""
+    """Return a state at rest."""
     m = len(opening)
     z, p, a, R = np.zeros((4, modes))
     rows = rows_of(opening, np.where(opening > 0, LOWER, INSIDE))
@@ -242,12 +242,12 @@ def state_of(modes: int, blocks: int, opening: Array) -> PlaneState:
 
 
 def ramps_of(model: PlaneModel) -> list[float]:
-    """The times in which loads rise, each once; weight does at once."""
+    """Return the times in which loads rise, each once; weight does at once."""
     return sorted({0.0, *(load.ramp for load in model.loads)})
 
 
 def loads_of(model: PlaneModel, blocks: Blocks, columns: int) -> tuple[Array, PointLoads]:
-    """The loads on centroids by their modes, a row for all that is prescribed, and those at other places."""
+    """Return the loads on centroids by their modes, a row for all that is prescribed, and those at other places."""
     ramps = ramps_of(model)
     rows = np.zeros((columns, int(blocks.modes.sum())))
     for i, part in enumerate(model.blocks):
@@ -266,7 +266,7 @@ def loads_of(model: PlaneModel, blocks: Blocks, columns: int) -> tuple[Array, Po
 
 
 def course_of(model: PlaneModel) -> Course:
-    """What is prescribed: no common base, the shares of the loads, the displacements of driven blocks."""
+    """Return what is prescribed: no common base, the shares of the loads, the displacements of driven blocks."""
     motions = [part.motion for part in model.blocks if part.motion is not None]
     ramps = ramps_of(model)
     instants = np.unique(np.concatenate([[0.0], ramps, *(np.asarray(motion.time, float) for motion in motions)]))
@@ -277,7 +277,7 @@ def course_of(model: PlaneModel) -> Course:
 
 
 def springs_of(model: PlaneModel) -> tuple[Springs, Array]:
-    """The laws of stated contacts, of bonds and of found contacts, and the number of the law of two blocks."""
+    """Return the laws of stated contacts, of bonds and of found contacts, and the number of the law of two blocks."""
     rows = [law_of(contact.springs) for contact in model.contacts]
     rows += [(1 / bond.stiffness, 1 / bond.shear, 0.0, math.inf, math.inf, 0.0) for bond in model.bonds]
     known: dict[ContactSprings, int] = {}
@@ -295,7 +295,7 @@ def springs_of(model: PlaneModel) -> tuple[Springs, Array]:
 
 
 def law_of(springs: ContactSprings) -> tuple[float, ...]:
-    """The numbers of a law, as `Springs` has them."""
+    """Return the numbers of a law, as `Springs` has them."""
     slips = springs.shear == 0 or springs.friction is not None
     limit = springs.cohesion if slips else math.inf
     softness = 1 / springs.shear if springs.shear else 0.0
@@ -303,7 +303,7 @@ def law_of(springs: ContactSprings) -> tuple[float, ...]:
 
 
 def places_of(model: PlaneModel, blocks: Blocks, most: int) -> Places:
-    """Contacts, then both ends of every bond, as points of their blocks, and room for so many that are found."""
+    """Return contacts, then both ends of every bond, as points of their blocks, and room for so many that are found."""
     rows = []
     for k, contact in enumerate(model.contacts):
         at = blocks.xi[blocks.start[contact.block] + contact.corner]
@@ -339,13 +339,13 @@ def places_of(model: PlaneModel, blocks: Blocks, most: int) -> Places:
 
 
 def edge_of(blocks: Blocks, block: int, edge: int) -> tuple[complex, complex]:
-    """Where an edge of a block starts, from its centroid, and the way from there to its end [m]."""
+    """Return where an edge of a block starts, from its centroid, and the way from there to its end [m]."""
     corners = blocks.xi[blocks.start[block] : blocks.start[block + 1]]
     return corners[edge], corners[(edge + 1) % len(corners)] - corners[edge]
 
 
 def start_of(model: PlaneModel, scheme: Scheme, march: March, course: Course) -> PlaneState:
-    """The state at t = 0: unstrained; a corner that lies behind its edge is pressed by its spring.
+    """Return the state at t = 0: unstrained; a corner that lies behind its edge is pressed by its spring.
 
     Behind an edge that is rigid it is a ValueError.
     """
@@ -391,7 +391,7 @@ def start_of(model: PlaneModel, scheme: Scheme, march: March, course: Course) ->
 
 
 def contact_columns(model: PlaneModel, march: March, history: History, kept: int) -> tuple[dict[str, Any], Array]:
-    """The fields of a result that tell of contacts and glue, and the energy stored in these, (k,) [J].
+    """Return the fields of a result that tell of contacts and glue, and the energy stored in these, (k,) [J].
 
     Contacts are those that are stated, and those that were found and closed at an instant that is kept.
     """
@@ -440,7 +440,7 @@ def contact_columns(model: PlaneModel, march: March, history: History, kept: int
 
 
 def rates_of(march: March, q: Array, modes: Array, centroid: Array) -> tuple[Array, Array, Array]:
-    """Velocities (k, b, 6), kinetic energy (k,) and momentum (k, 3) of a history, by the rates of the modes."""
+    """Return velocities (k, b, 6), kinetic energy (k,) and momentum (k, 3) of a history, by the rates of the modes."""
     blocks = march.method.blocks
     e = q[:, :, 3:]
     strained = np.einsum("bij,kbj->kbi", blocks.M, e)
@@ -462,7 +462,7 @@ def rates_of(march: March, q: Array, modes: Array, centroid: Array) -> tuple[Arr
 
 
 def strain_energy(model: PlaneModel, q: Array) -> Array:
-    """That of all blocks, (k,) [J]."""
+    """Return that of all blocks, (k,) [J]."""
     total = np.zeros(len(q))
     for i, part in enumerate(model.blocks):
         if not (part.held or part.rigid):
@@ -471,7 +471,7 @@ def strain_energy(model: PlaneModel, q: Array) -> Array:
 
 
 def load_energy(model: PlaneModel, q: Array) -> Array:
-    """Minus the work that the whole loads do by the ways since t = 0, (k,) [J]."""
+    """Return minus the work that the whole loads do by the ways since t = 0, (k,) [J]."""
     mass = np.array([0.0 if part.held else part.block.total_mass for part in model.blocks])
     total: Array = -(q[:, :, :2] @ np.array(model.gravity)) @ mass
     for load in model.loads:
@@ -483,7 +483,7 @@ def load_energy(model: PlaneModel, q: Array) -> Array:
 
 
 def way_of(q: Array, at: complex) -> NDArray[np.complex128]:
-    """The displacement of a material point of a block from t = 0, (k,) [m]."""
+    """Return the displacement of a material point of a block from t = 0, (k,) [m]."""
     shear = q[:, 5] / 2
     stretch = q[:, 3] * at.real + shear * at.imag + 1j * (shear * at.real + q[:, 4] * at.imag)
     turned: NDArray[np.complex128] = np.expm1(1j * q[:, 2]) * (at + stretch)

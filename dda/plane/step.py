@@ -176,7 +176,7 @@ def make_stage(
 
 
 def length_in_plane(march: March, stage: StageRoom, ratio: float) -> Length:
-    """What belongs to a length, over dt; the flexibility of the contacts is written anew in each round."""
+    """Return what belongs to a length, over dt; the flexibility of the contacts is written anew in each round."""
     if ratio == 1.0:
         return stage.whole
     if stage.part.numbers[0] != ratio:
@@ -185,7 +185,7 @@ def length_in_plane(march: March, stage: StageRoom, ratio: float) -> Length:
 
 
 def memory_of(plane: Plane, stage: StageRoom, before: PlaneState) -> PlaneState:
-    """The state with whose contacts a stage begins."""
+    """Return the state with whose contacts a stage begins."""
     return plane.begun if stage.numbers.begin == 0 else before
 
 
@@ -218,7 +218,7 @@ def stand(plane: Plane, q: Matrix) -> None:
 
 
 def largest_change(plane: Plane) -> float:
-    """How far the increments of a round are from those that it was made with [m]."""
+    """Return how far the increments of a round are from those that it was made with [m]."""
     largest = 0.0
     for i in range(len(plane.D)):
         for k in range(6):
@@ -343,7 +343,7 @@ def accept(march: March, memory: PlaneState, before: PlaneState, after: PlaneSta
 
 
 def kinetic_excess(march: March, state: PlaneState) -> float:
-    """The kinetic energy less that of the modes alone, p' p / 2, which a strained block has [J]."""
+    """Return the kinetic energy less that of the modes alone, p' p / 2, which a strained block has [J]."""
     if march.method.strained == 0:
         return 0.0
     stand(march.method, state.q)

@@ -38,7 +38,7 @@ class Springs(NamedTuple):
 
 
 def laws_for(laws: Laws, count: int) -> Laws:
-    """The laws of the first contacts."""
+    """Return the laws of the first contacts."""
     return Laws(
         count,
         2 * count,
@@ -145,7 +145,7 @@ def take_row(before: PlaneState, r: int, out: PlaneState, to: int) -> None:
 
 
 def dropped_energy(detection: Detection, springs: Springs, places: Places, rows: Rows) -> float:
-    """What was stored in contacts of the step before from which none of this step goes on [J]."""
+    """Return what was stored in contacts of the step before from which none of this step goes on [J]."""
     previous = detection.previous
     stated = places.count[1]
     old = detection.count[1]

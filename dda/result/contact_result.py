@@ -65,12 +65,12 @@ class ContactResult(MarchResult):
     step_passes: NDArray[np.int_] | None = None  # of the augmented Lagrangian in each step
 
     def across(self, values: Array) -> Array:
-        """What a row of each contact across the base holds at every step, (contacts, steps)."""
+        """Return what a row of each contact across the base holds at every step, (contacts, steps)."""
         rows: Array = values[1:, : self.contacts].T
         return np.vstack([rows, rows]) if self.contacts == 1 else rows
 
     def along(self, values: Array) -> Array:
-        """The same along the base, zero without such rows; one contact is that of a symmetric motion."""
+        """Return the same along the base, zero without such rows; one contact is that of a symmetric motion."""
         rows: Array = values[1:].T
         if not len(rows):
             rows = np.zeros((self.contacts, rows.shape[1]))
@@ -137,7 +137,7 @@ class ContactResult(MarchResult):
 def run_fields(
     history: History, outcome: int, scheme: Scheme, notes: Sequence[str], clock: tuple[float, float]
 ) -> dict[str, Any]:
-    """The fields of a result that are the same for every body.
+    """Return the fields of a result that are the same for every body.
 
     The outcome is among `dda.contact.rows.OUTCOMES`; the clock has when set-up and steps began [s].
     """

@@ -54,7 +54,7 @@ def linear_result(
     notes: tuple[str, ...] = (),
     **work: Any,
 ) -> Result:
-    """The result of steps of which none may fail; a column is infinite from its first overflow on.
+    """Return the result of steps of which none may fail; a column is infinite from its first overflow on.
 
     The clock has when set-up and steps began [s]; what is `observed`, (columns, steps), is changed where it overflows;
     without the `size` of the loads nothing moves.
@@ -70,7 +70,7 @@ def linear_result(
 
 
 def times_of(scheme: Scheme, steps: int, began: float, ready: float) -> dict[str, Any]:
-    """The times of a result: of its steps, and what set-up and steps took, the last ones ending now [s]."""
+    """Return the times of a result: of its steps, and what set-up and steps took, the last ones ending now [s]."""
     return {
         "time": step_times(scheme, steps),
         "setup_seconds": ready - began,
@@ -79,7 +79,7 @@ def times_of(scheme: Scheme, steps: int, began: float, ready: float) -> dict[str
 
 
 def step_times(scheme: Scheme, steps: int) -> Array:
-    """The times of step 1 to the last [s]."""
+    """Return the times of step 1 to the last [s]."""
     times = np.arange(1.0, steps + 1)
     times *= scheme.step
     return times

@@ -37,7 +37,7 @@ Map = tuple[int, int, int, int, int, int]
 
 
 def why_stepped(scheme: Scheme, frequencies: Array) -> str | None:
-    """Why a history must be stepped, in words; None if it can be blocked.
+    """Return why a history must be stepped, in words; None if it can be blocked.
 
     A power of a growing map overflows before the history does.
     """
@@ -50,7 +50,7 @@ def why_stepped(scheme: Scheme, frequencies: Array) -> str | None:
 
 
 def _grows(scheme: Scheme, omega: float) -> bool:
-    """Whether the step of a mode has a root outside the unit circle, or on it at -1."""
+    """Tell whether the step of a mode has a root outside the unit circle, or on it at -1."""
     if scheme.damped:
         _, slope, product = polynomial(scheme, omega).tolist()
         return not (4 - 2 * slope + product > 0 and product - slope <= GROWTH_ROUNDING)
@@ -69,7 +69,7 @@ def _grows(scheme: Scheme, omega: float) -> bool:
 
 
 def blocked_modes(scheme: Scheme, frequencies: Array, rows: Array, steps: int) -> Array:
-    """The observed columns of every step from rest, (columns, steps).
+    """Return the observed columns of every step from rest, (columns, steps).
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def blocked_modes(scheme: Scheme, frequencies: Array, rows: Array, steps: int) -
 
 
 def doubled(start: Array, maps: Array) -> Array:
-    """The rows and, below them, their products with all maps made of those of 1, 2, 4, ... steps."""
+    """Return the rows and, below them, their products with all maps made of those of 1, 2, 4, ... steps."""
     have = len(start)
     rows = np.empty((have << len(maps), start.shape[1]))
     rows[:have] = start
@@ -103,7 +103,7 @@ def doubled(start: Array, maps: Array) -> Array:
 
 
 def _powers(scheme: Scheme, frequencies: Array, levels: int) -> ArrayPair:
-    """The maps of 1, 2, 4, ... steps of all modes together, and the state at step 1.
+    """Return the maps of 1, 2, 4, ... steps of all modes together, and the state at step 1.
 
     The state holds u and the scaled p of every mode and a constant 1, so that the maps are linear.
     """
@@ -121,7 +121,7 @@ def _powers(scheme: Scheme, frequencies: Array, levels: int) -> ArrayPair:
 
 
 def with_all_digits(scheme: Scheme) -> Scheme:
-    """The scheme in decimal numbers, which `staged_step` takes in place of doubles."""
+    """Return the scheme in decimal numbers, which `staged_step` takes in place of doubles."""
     numbers = ("alpha", "delta", "gg", "step", "mass_damping", "stiffness_damping")
     fields: dict[str, Any] = {name: Decimal(getattr(scheme, name)) for name in numbers}
     if scheme.table is not None:
@@ -133,7 +133,7 @@ def with_all_digits(scheme: Scheme) -> Scheme:
 
 
 def _mode(exact: Scheme, w: float, levels: int) -> tuple[Array, tuple[float, float]]:
-    """The entries of the maps of one mode, (levels, 6), and (u, p) at step 1, p scaled.
+    """Return the entries of the maps of one mode, (levels, 6), and (u, p) at step 1, p scaled.
 
     The momentum is measured in the power of two that makes the off-diagonal entries about equal. The scheme is that of
     `with_all_digits`.
@@ -148,7 +148,7 @@ def _mode(exact: Scheme, w: float, levels: int) -> tuple[Array, tuple[float, flo
 
 
 def _one_step(exact: Scheme, w: float) -> tuple[Map, tuple[int, int]]:
-    """The map of one step, and (u, p) at step 1, from the scheme's own step.
+    """Return the map of one step, and (u, p) at step 1, from the scheme's own step.
 
     Under the load F = k the static displacement is 1, so that D is u and P is p; the inertia force of a state is
     k - k D - e P.

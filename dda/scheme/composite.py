@@ -19,7 +19,7 @@ from dda.scheme.stage import Stage, Table
 
 
 def composite(rho_inf: float = 0.0, split: float | None = None) -> Table:
-    """The two stages; by default the split at which both have one matrix.
+    """Return the two stages; by default the split at which both have one matrix.
 
     Raises
     ------
@@ -50,5 +50,5 @@ def composite(rho_inf: float = 0.0, split: float | None = None) -> Table:
 
 
 def same_matrix(rho_inf: float) -> float:
-    """Gamma = (2 - sqrt(2 + 2 rho))/(1 - rho), at which q2 is gamma/2 and both stages have the same matrix."""
+    """Return gamma = (2 - sqrt(2 + 2 rho))/(1 - rho), at which q2 is gamma/2 and both stages have the same matrix."""
     return 2 / (2 + math.sqrt(2 + 2 * rho_inf))  # the same without 0/0 at rho = 1

@@ -16,7 +16,7 @@ from dda.scheme.stage import Stage, Table
 
 
 def generalised_alpha(am: float, af: float) -> Table:
-    """The stage of second order and greatest damping of high frequencies for am and af."""
+    """Return the stage of second order and greatest damping of high frequencies for am and af."""
     beta = (1 - am + af) ** 2 / 4
     gamma = 0.5 - am + af
     return Table((Stage(beta, gamma, e_0=(1 - 2 * beta) / 2, g_0=1 - gamma, am=am, af=af),))

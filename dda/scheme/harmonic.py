@@ -54,7 +54,7 @@ def acceleration_share(scheme: Scheme, omega: ArrayLike) -> Complex:
 
 
 def staged_amplitude(scheme: Scheme, omega: Array, k: float, load: float, base: float) -> Complex:
-    """The amplitudes of D, from the base, of a mode under dt^2 F = load and a base motion, at frequencies w.
+    """Return the amplitudes of D, from the base, of a mode under dt^2 F = load and a base motion, at frequencies w.
 
     Parameters
     ----------
@@ -119,7 +119,7 @@ def chosen(scheme: Scheme, frequencies: ArrayLike, exact: bool) -> tuple[Complex
 
 
 def answering(scheme: Scheme, frequencies: ArrayLike, exact: bool) -> tuple[Complex, Complex]:
-    """The squared frequency at which the undamped system answers, and the factor on its answer.
+    """Return the squared frequency at which the undamped system answers, and the factor on its answer.
 
     With C = a0 M + a1 K, (K + S C - W2 M) D = F is (1 + a1 S) (K - W2' M) D = F, W2' = (W2 - a0 S) / (1 + a1 S).
     """

@@ -12,5 +12,5 @@ from dda.scheme.stage import Stage, Table
 
 
 def leapfrog() -> Table:
-    """Its only stage."""
+    """Return its only stage."""
     return Table((Stage(0.0, 0.0, e_0=1.0, g_0=1.0),), lag=0.5)

@@ -31,7 +31,7 @@ def named_scheme(
     rho_inf: float | None = None,
     split: float | None = None,
 ) -> Scheme:
-    """A scheme by its name; Newmark's is `dda.Scheme(alpha, delta, gg, step)`.
+    """Return a scheme by its name; Newmark's is `dda.Scheme(alpha, delta, gg, step)`.
 
     Parameters
     ----------

@@ -121,7 +121,7 @@ def step_matrices(scheme: Scheme, M: Real, k: Real) -> list[Real]:
 
 
 def initial_acceleration(scheme: Scheme, F: Real) -> Real:
-    """The inertia force dt^2 M A0 at rest: dt^2 F if consistent, else zero."""
+    """Return the inertia force dt^2 M A0 at rest: dt^2 F if consistent, else zero."""
     return F if scheme.start == "consistent" else 0 * F
 
 
@@ -158,14 +158,14 @@ def staged_step(
 
 
 def rest(scheme: Scheme, F: Real, D: Real, k: Real) -> State[Real]:
-    """The state at t = 0 of a body at rest under dt^2 F; a velocity that lags is that of half a step before."""
+    """Return the state at t = 0 of a body at rest under dt^2 F; a velocity that lags is that of half a step before."""
     force = F - k * D
     f = initial_acceleration(scheme, force)
     return D, late_momentum(scheme, 0 * f, f), f, force
 
 
 def late_momentum(scheme: Scheme, P: Real, f: Real) -> Real:
-    """The momentum that a scheme carries at t = 0, whose next step takes gg of it."""
+    """Return the momentum that a scheme carries at t = 0, whose next step takes gg of it."""
     if scheme.lag == 0:
         return P
     return (P - scheme.lag * f) / scheme.gg

@@ -44,7 +44,7 @@ def state_matrix(scheme: Scheme, k: float) -> Array:
 
 
 def polynomial(scheme: Scheme, omega: float) -> Array:
-    """The coefficients of y = z - 1, highest power first, of the roots that are not z = 0 for any w dt."""
+    """Return the coefficients of y = z - 1, highest power first, of the roots that are not z = 0 for any w dt."""
     k = omega * omega
     if scheme.damped:
         e = viscosity(scheme, k)
@@ -63,7 +63,7 @@ def polynomial(scheme: Scheme, omega: float) -> Array:
 
 
 def roots(scheme: Scheme, omega: float) -> ComplexArray:
-    """The roots z of a step of a mode with w dt = omega, two or three, the largest modulus first."""
+    """Return the roots z of a step of a mode with w dt = omega, two or three, the largest modulus first."""
     return largest_first(1 + increments(scheme, omega))
 
 
@@ -102,5 +102,5 @@ def damping_ratio(scheme: Scheme, omega: float) -> float:
 
 
 def quadratic(b: float, c: float) -> Quadratic:
-    """The equation of a pair by that of its y."""
+    """Return the equation of a pair by that of its y."""
     return Quadratic(np.asarray(b), np.asarray(c), np.asarray(1 + (c - b)), np.asarray(c - b))

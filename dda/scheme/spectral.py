@@ -46,14 +46,14 @@ class Quadratic(NamedTuple):
 
 
 def newmark_quadratic(omega: ArrayLike, alpha: Number, delta: Number, gg: Number) -> Quadratic:
-    """The equation of the two eigenvalues."""
+    """Return the equation of the two eigenvalues."""
     X = _x(omega, alpha)
     grown = (0.5 - delta) * X
     return Quadratic(1 - gg + (0.5 + gg * delta) * X, (1 + gg) / 2 * X, gg * (1 + grown), gg * grown - (1 - gg))
 
 
 def pair(of: Quadratic) -> tuple[ComplexArray, ComplexArray]:
-    """Both y and both lambda, last axis of length two, by equations of their own: small ones keep digits."""
+    """Return both y and both lambda, last axis of length two, by equations of their own: small ones keep digits."""
     middle = -np.asarray(of.b) / 2
     center = 1 + middle
     is_fast = np.abs(center) < np.abs(middle)
@@ -74,13 +74,13 @@ def pair(of: Quadratic) -> tuple[ComplexArray, ComplexArray]:
 
 
 def largest_first(eigenvalues: ComplexArray) -> ComplexArray:
-    """Eigenvalues by their moduli, along the last axis."""
+    """Return eigenvalues by their moduli, along the last axis."""
     order = np.argsort(-np.abs(eigenvalues), axis=-1, kind="stable")
     return np.asarray(np.take_along_axis(eigenvalues, order, axis=-1))
 
 
 def eigenvalues(omega: ArrayLike, alpha: Number, delta: Number, gg: Number = 1.0) -> ComplexArray:
-    """The two eigenvalues, last axis of length two, the larger modulus first."""
+    """Return the two eigenvalues, last axis of length two, the larger modulus first."""
     return largest_first(pair(newmark_quadratic(omega, alpha, delta, gg))[1])
 
 
@@ -125,7 +125,7 @@ def period_elongation(omega: ArrayLike, alpha: Number, delta: Number, gg: Number
 
 
 def critical_omega(alpha: float, delta: float, gg: float = 1.0) -> float:
-    """The Omega beyond which the scheme grows; inf if it never does.
+    """Return the Omega beyond which the scheme grows; inf if it never does.
 
     A root leaves the unit circle at -1 where Omega^2 = 2 (1 + gg) / [1/2 + gg (2 delta - 1/2)
     - 2 alpha (1 + gg)], and a complex pair leaves it, for delta < 1/2 only, where

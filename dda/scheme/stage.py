@@ -52,12 +52,12 @@ class Table(NamedTuple):
 
 
 def newmark_stage(alpha: float, delta: float) -> Stage:
-    """The only stage of Newmark's scheme, eq. (6) and (7)."""
+    """Return the only stage of Newmark's scheme, eq. (6) and (7)."""
     return Stage(alpha, delta, e_0=(1 - 2 * alpha) / 2, g_0=1 - delta)
 
 
 def plain_stage(stage: Stage) -> Stage:
-    """The numbers of a stage alone, for a momentum that is discounted already and a step of length one."""
+    """Return the numbers of a stage alone, for a momentum that is discounted already and a step of length one."""
     numbers = Stage(*(float(number) for number in stage))
     return numbers._replace(gg=1.0, step=1.0)
 
@@ -76,7 +76,7 @@ def predictor(stage: Stage, P: Real, f: Real, P_g: Real, f_g: Real) -> Real:
 
 
 def inertia_force(stage: Stage, force: Real, force_0: Real, f: Real) -> Real:
-    """The inertia force f1 at the end of a stage: (1 - am) f1 + am f = (1 - af) force + af force_0.
+    """Return the inertia force f1 at the end of a stage: (1 - am) f1 + am f = (1 - af) force + af force_0.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def velocity_corrector(stage: Stage, P: Real, f: Real, f_g: Real, f1: Real) -> R
 
 
 def implicit_weight(stage: Stage) -> float:
-    """The weight of dt^2 K beside M in the matrix of a stage, alpha of Newmark's."""
+    """Return the weight of dt^2 K beside M in the matrix of a stage, alpha of Newmark's."""
     return stage.alpha * (1 - stage.af) / (1 - stage.am)
 
 
