@@ -172,7 +172,7 @@ def glued_march(
     energies: bool,
     steps: int,
 ) -> March:
-    """Return the march of so many steps of glued blocks under loads of a size, whose energies are kept too if asked for.
+    """Return the march of so many steps of glued blocks under loads of a size, with energies kept too if asked for.
 
     Parameters
     ----------

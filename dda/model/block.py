@@ -65,7 +65,7 @@ class Block:
         return self.material.density * self.section.area
 
     def edge(self, index: int) -> ArrayPair:
-        """Return the two ends of edge `index`, from corner `index` to the next one [m]; a ValueError if there is none."""
+        """Return the two ends of edge `index`, from corner `index` to the next [m]; a ValueError if there is none."""
         n = len(self.corners)
         if not 0 <= index < n:
             raise ValueError(f"edge: must be between 0 and {n - 1}, got {index!r}")
