@@ -157,14 +157,14 @@ def _read_set(
     pack = document.content.get("pack")
     if pack is not None and pack not in packs():
         rule = f"must be one of {', '.join(packs())}, this pack and earlier ones"
-        defects.add(document.place(("pack",)), rule, field="pack", value=repr(pack), advice=EXPORT)
+        defects.add(document.place, rule, field="pack", value=repr(pack), advice=EXPORT)
         pack = None
     data = checked(document, AnswersData, FILLED_IN, defects)
     for field in ("program", "version"):
         text = document.content.get(field)
         if isinstance(text, str) and text.strip() and not folder_name(text):
             rule = "must hold a letter or digit of ASCII, for the name of its folder"
-            defects.add(document.place((field,)), rule, field=field, value=repr(text))
+            defects.add(document.place, rule, field=field, value=repr(text))
     # tables of an unknown pack are checked by this one, so that all defects are told at once
     answers = _answers(folder, document, pack or PACK, own, defects, step)
     if len(defects) == before and not answers and own is None:
@@ -205,7 +205,7 @@ def _answers(
             continue
         step(name)
         posed = problem(name) if own is None else own[name]
-        columns = _reported(document, ("not_reported", name), withheld_by_name.get(name, []), posed, defects)
+        columns = _reported(document, f"not_reported.{name}", withheld_by_name.get(name, []), posed, defects)
         known_defects = len(defects)
         history = read_answer(path, posed, defects, columns) if columns else None
         if is_later and (history is not None or len(defects) > known_defects):
@@ -215,7 +215,7 @@ def _answers(
     if later:
         more = f" and {len(later) - 1} more" if len(later) > 1 else ""
         rule = f"must be {PACK}, from which on the pack holds {later[0]}{more}"
-        defects.add(document.place(("pack",)), rule, field="pack", value=repr(pack))
+        defects.add(document.place, rule, field="pack", value=repr(pack))
     names = [path.name for path in tables]
     for field in ("not_reported", "step_s"):
         # Of a folder that answers more than is asked all is stated.
@@ -224,25 +224,21 @@ def _answers(
     return tuple(answers[name] for name in order if name in answers)
 
 
-def _reported(
-    document: Document, address: tuple[str, ...], withheld: object, posed: Problem, defects: Defects
-) -> list[str]:
+def _reported(document: Document, field: str, withheld: object, posed: Problem, defects: Defects) -> list[str]:
     """Return the columns of the history that a table has to hold; none, and the defects, where that is not clear."""
     if not isinstance(withheld, Sequence) or isinstance(withheld, str):  # a defect of its type, which is known
         return []
     names = [posed.named(column) for column in posed.columns]
-    field = ".".join(address)
     before = len(defects)
     for i, name in enumerate(withheld):
-        place = document.place((*address, i))
         if name not in names:
-            defects.add(place, f"must be among {', '.join(names)}", field=field, value=repr(name))
+            defects.add(document.place, f"must be among {', '.join(names)}", field=field, value=repr(name))
         elif name in withheld[:i]:
-            defects.add(place, "must not repeat a column", field=field, value=repr(name))
+            defects.add(document.place, "must not repeat a column", field=field, value=repr(name))
     remaining = [column for column in posed.columns if posed.named(column) not in withheld]
     if not remaining:
         rule = "must leave a column to judge"
-        defects.add(document.place(address), rule, field=field, value=f"all of {', '.join(names)}")
+        defects.add(document.place, rule, field=field, value=f"all of {', '.join(names)}")
     return remaining if len(defects) == before else []
 
 
@@ -252,12 +248,11 @@ def _check_problems(
     """Add a defect for each problem that a field names and no table answers."""
     stated = document.content.get(field)
     for name in stated if isinstance(stated, dict) else ():
-        place = document.place((field, name), of_key=True)
         if name not in known:
             rule = f"{name}: must be among {', '.join(known)}"
-            defects.add(place, rule, field=field, advice=did_you_mean(name, known))
+            defects.add(document.place, rule, field=field, advice=did_you_mean(name, known))
         elif name + TABLE not in tables:
-            defects.add(place, f"{name}: must have a table {name}{TABLE}", field=field, value="no such file")
+            defects.add(document.place, f"{name}: must have a table {name}{TABLE}", field=field, value="no such file")
 
 
 def _check_once(sets: Sequence[AnswerSet], defects: Defects) -> None:
