@@ -1,8 +1,9 @@
 """Discontinuous deformation analysis of the two-block model, of systems of glued blocks, and of blocks in the plane.
 
-One elastic polygonal block on locked contact springs, pressed from above, stepped by Newmark's
-scheme with kinetic damping, in a form that keeps its digits for stiff springs; the printed
-recursion beside it; the scheme's spectral formulas. Importing the package costs numpy only.
+One elastic polygonal block on locked contact springs, pressed from above, stepped by Newmark's scheme with kinetic
+damping, in a form that keeps its digits for stiff springs; the printed recursion beside it; the scheme's spectral
+formulas. Importing the package costs numpy only. Data that are out of their range, or do not go together, are a
+ValueError that names field, rule and value.
 """
 
 from dda.bodies.block_system import BlockSystem, SurfaceLoad

@@ -1,6 +1,7 @@
 """Finite-element and exact-bar references for a block on a locked elastic foundation.
 
-The finite-element names load scikit-fem when they are first used; `fem_reference.exact.bar` never does.
+The finite-element names load scikit-fem when they are first used; `fem_reference.exact.bar` never does. Data that are
+out of their range, or do not go together, are a `ValueError` that names field, rule and value.
 """
 
 from __future__ import annotations

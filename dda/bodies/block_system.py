@@ -62,7 +62,6 @@ class BlockSystem:
     slope: float = 0.0  # by which gravity is turned, to g (sin, -cos) [deg]
 
     def __post_init__(self) -> None:
-        """Check that every block that is named exists."""
         joined = {b for joint in self.joints for b in (joint.first, joint.second) if b != FIXED}
         joined |= {load.block for load in self.loads}
         unknown = [b for b in joined if not 0 <= b < len(self.blocks)]
@@ -136,10 +135,7 @@ class BlockSystem:
     def rows_at(self, point: Point) -> Array:
         """Return the rows of displacements, rotation and strains at a point, the mean where blocks meet, (6, 6 blocks).
 
-        Raises
-        ------
-        ValueError
-            If no block holds it.
+        A ValueError if no block holds it.
         """
         rows = np.zeros((6, len(self.blocks), 6))
         numbers = self.blocks_at(point)
@@ -181,7 +177,6 @@ class Equations:
 
     @cached_property
     def _factor(self) -> Callable[[Array], Array]:
-        """The solver of `saddle`."""
         return factor(self.saddle, definite=False)
 
     def at_rest(self, F: Array, g: Array) -> ArrayPair:

@@ -61,8 +61,6 @@ def glued_blocks(
         Lines on which edges are glued to what is fixed.
     clamp_glue : float, optional
         Stiffness of the springs there, without it that of the glue [N/m].
-    tractions : sequence of Traction
-        Loads on parts of the outline.
     stress : tuple of float
         s_xx, s_yy, s_xy, whose tractions s n act on all of the outline that is not clamped [Pa].
     gravity : tuple of float
@@ -123,13 +121,7 @@ def _outline(blocks: Sequence[Block], joints: Sequence[Joint]) -> Iterator[Piece
 
 
 def _on_line(outline: Sequence[Piece], start: Point, end: Point, what: str) -> list[Piece]:
-    """Return what lies of the outline between two points of a line.
-
-    Raises
-    ------
-    ValueError
-        Nothing does.
-    """
+    """What lies of the outline between two points of a line."""
     length = math.dist(start, end)
     if not length > 0:
         raise ValueError(f"{what}: must have two ends, got {start!r} and {end!r}")
@@ -141,13 +133,7 @@ def _on_line(outline: Sequence[Piece], start: Point, end: Point, what: str) -> l
 
 
 class GluedBlocks:
-    """What glued blocks answer: at rest, by modes, step by step.
-
-    Parameters
-    ----------
-    system : BlockSystem
-        As `glued_blocks` returns it.
-    """
+    """What blocks that `glued_blocks` returns answer: at rest, by modes, step by step."""
 
     def __init__(self, system: BlockSystem) -> None:
         self.system = system
@@ -158,10 +144,7 @@ class GluedBlocks:
     def rest(self) -> Array:
         """Displacements of the blocks at rest under the constant loads, (blocks, 6).
 
-        Raises
-        ------
-        ValueError
-            If nothing holds the blocks and their loads have a resultant.
+        A ValueError if nothing holds them and the loads have a resultant.
         """
         equations = self.statics
         z, force = equations.at_rest(equations.F, np.zeros(len(equations.pressure)))
@@ -180,12 +163,8 @@ class GluedBlocks:
     def observer(self, start: Point, end: Point) -> Array:
         """Return the rows of the mean displacement in x and y of a part of the outline, or of a point, (2, 6 blocks).
 
-        A block of one strain moves its edges linearly: the mean is that of the middle.
-
-        Raises
-        ------
-        ValueError
-            If nothing lies there.
+        A block of one strain moves its edges linearly: the mean is that of the middle. A ValueError if nothing lies
+        there.
         """
         if start == end:
             return self.system.rows_at(start)[:2]

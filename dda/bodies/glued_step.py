@@ -172,20 +172,14 @@ def glued_march(
     energies: bool,
     steps: int,
 ) -> March:
-    """Return the march of glued blocks.
+    """Return the march of so many steps of glued blocks under loads of a size, with energies kept too if asked for.
 
     Parameters
     ----------
-    size
-        Of the loads.
     contact : (m, unknowns) array
         Rows of contact, each of one block with all its unknowns.
     observed : (c, n) and (c, gaps) arrays
         What is kept of every step, by the modes and by the forces of the glue.
-    energies
-        Whether the energies of every step are kept, too.
-    steps
-        How many will be march.
     """
     rows = contact @ equations.shapes
     m = len(rows)
@@ -235,14 +229,8 @@ def glued_march(
 def start_state(glue: Glue, opening: Array, velocity: Array, moved: Array) -> GluedState:
     """Return the state at t = 0: unstrained, without contact force.
 
-    Parameters
-    ----------
-    opening : (m,) array
-        Of the rows of contact [m].
-    velocity : (n,) array
-        Of the modes.
-    moved : (2,) array
-        Displacement of what is fixed, which stretches the glue [m].
+    `opening` is that of the rows [m], (m,), `velocity` that of the modes, (n,). What is fixed has `moved` by (x, y),
+    which stretches the glue [m].
     """
     scheme = glue.scheme
     force = -(scheme.step**2 * (glue.equations.kappa @ (glue.equations.G @ moved)))

@@ -52,7 +52,6 @@ class Joint:
     shear: float  # stiffness of the shear spring at each end [N/m]
 
     def __post_init__(self) -> None:
-        """Check the ranges."""
         check_positive(normal=self.normal, shear=self.shear)
         if not math.dist(self.start, self.end) > 0:
             raise ValueError(f"end: must differ from start, got {self.end!r}")
@@ -167,10 +166,7 @@ def common_part(
 ) -> tuple[Point, Point] | None:
     """Return the ends of what an edge shares with another one on its line, in its own direction.
 
-    Parameters
-    ----------
-    slack
-        How far the other one may lie beside the line; what is shorter is none [m].
+    The other one may lie beside the line by `slack`; what is shorter is none [m].
     """
     (x, y), (end_x, end_y) = edge
     along_x = end_x - x

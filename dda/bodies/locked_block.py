@@ -21,7 +21,7 @@ from dda.scheme.adaptive import adapted_modes
 from dda.scheme.blocked import blocked_modes, why_stepped
 from dda.scheme.newmark import Scheme, stepped_modes
 
-ADAPTIVE_COLUMNS = ("discount", "kinetic_damping_loss")  # of self-adaptive damping, further columns [-, J]
+ADAPTIVE_COLUMNS = ("discount", "kinetic_damping_loss")  # of self-adaptive damping
 
 
 def solve(
@@ -44,23 +44,20 @@ def solve(
 
     Parameters
     ----------
-    steps : int
-        Number of steps.
     columns : sequence of str
         Any of `dda.COLUMNS`; of self-adaptive damping also "discount" (that each step starts with) and
         "kinetic_damping_loss" (energy taken up to the end of a step, J per metre of thickness).
     full : bool
         Keep all six unknowns, also those that the load cannot reach, and step.
     floor : float, optional
-        Least discount, 0 to 1, of self-adaptive damping, with 1 nothing is damped: while the kinetic energy T grows a
-        step keeps the velocity of the one before; once it has fallen in step n, step n + 1 starts with the share
-        gg = max(floor, sqrt(T_n / T_(n-1))) of it (`dda.scheme.adaptive`). None: the scheme's own discount.
+        Least discount, 0 to 1, of self-adaptive damping (`dda.scheme.adaptive`); with 1 nothing is damped. None: the
+        scheme's own discount.
 
     Raises
     ------
     ValueError
         If the number of steps is not positive, a column is unknown, or the discount is adaptive and the scheme has a
-        damping of its own, or the base moves.
+        damping of its own or the base moves.
     """
     names = [name for name in columns if floor is None or name not in ADAPTIVE_COLUMNS]
     check_request(steps, names)

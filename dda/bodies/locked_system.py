@@ -31,8 +31,6 @@ def solve_system(
 
     Parameters
     ----------
-    steps : int
-        Number of steps.
     columns : sequence of str
         Any of `dda.COLUMNS`, at the system's observed point.
     full : bool
@@ -61,15 +59,7 @@ def stepped(
     rows: ArrayPair,
     began: float,
 ) -> Result:
-    """Step a system from rest and return what some rows, of z and of the joint forces, observe of it.
-
-    Parameters
-    ----------
-    equations
-        In the unknowns that are kept.
-    began
-        When the set-up began [s].
-    """
+    """Step a system from rest, set up since an instant [s]; return what rows, of z and of the joint forces, observe."""
     by_modes, by_force = rows
     if scheme.damped:  # of springs and dashpots together, of which the springs' own force is read from z
         by_modes = by_modes + (equations.B.T @ (equations.kappa @ by_force.T)).T

@@ -118,14 +118,9 @@ def opening_block(model: LoadedBlock, velocity: float = 0.0, full: bool = False)
 
 
 def start_of(block: OpeningBlock, scheme: Scheme, gap: float, velocity: float, at_once: bool = False) -> State:
-    """Return the state at t = 0: unstrained, without contact force, the corners at the starting gap.
+    """Return the state at t = 0: unstrained, without contact force, at the starting gap, with a velocity upwards [m/s].
 
-    Parameters
-    ----------
-    velocity
-        Of the block, upwards [m/s].
-    at_once
-        Whether the block starts with the acceleration of its load, whatever the scheme says.
+    The block starts with the acceleration of its load `at_once`, or else as the scheme says.
     """
     dt = scheme.step
     R = load_share(block.ramp, 0.0) * (dt * dt * block.body.loads[0])

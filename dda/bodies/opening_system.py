@@ -46,7 +46,6 @@ class OpeningSystem:
     rules: ClassVar[tuple[str, ...]] = (NEWMARK,)
 
     def __post_init__(self) -> None:
-        """Check the law."""
         law = self.contact
         if law.damping:
             raise ValueError(f"damping: sub-blocks take springs without dashpots alone, got {law.damping:g}")
@@ -112,13 +111,7 @@ class OpeningSystem:
 def opening_subdivided(
     model: UnilateralModel, columns: int, rows: int, glue: float, pattern: Pattern = "squares"
 ) -> OpeningSystem:
-    """Return the block over corners that open, cut into sub-blocks; see `dda.subdivided` for the parameters.
-
-    Raises
-    ------
-    ValueError
-        If the block is not a convex quadrilateral, or a number is out of range.
-    """
+    """Return the block over corners that open, cut into sub-blocks; see `dda.subdivided` for parameters and errors."""
     load = replace(model.load, motion=None)
     locked = TwoBlockModel(model.block, Contact(1.0), load, model.base, model.top)
     cut = subdivided(locked, columns, rows, glue, pattern)

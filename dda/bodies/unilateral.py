@@ -140,11 +140,6 @@ class UnilateralOptions:
       stays;
     - "augmented": passes of an augmented Lagrangian (Uzawa) over springs of the given stiffness until no contact is
       pressed deeper than `penetration`. They lead to the rigid stop, whose rebound is arbitrary at every step.
-
-    Raises
-    ------
-    ValueError
-        If a value is out of its range.
     """
 
     rule: str = NEWMARK  # among RULES
@@ -158,7 +153,6 @@ class UnilateralOptions:
     rotation: str = EXACT  # or "first-order": the outline of a step moves by x - r y, y + r x, and grows
 
     def __post_init__(self) -> None:
-        """Check the ranges."""
         for field, known in (("rule", RULES), ("rotation", (EXACT, FIRST_ORDER))):
             if getattr(self, field) not in known:
                 raise ValueError(f"{field}: must be among {', '.join(known)}, got {getattr(self, field)!r}")
@@ -206,20 +200,16 @@ def solve_unilateral(
 ) -> AnyResult:
     """Step blocks on contact that opens, from rest or from their starting velocity.
 
-    Displacements and rotation count from t = 0; strains of a block that turns are those along axes that turn with it.
-    A numerical failure is an outcome, not an exception: the history then ends with the last step that was reached.
+    Displacements and rotation count from t = 0; strains of a block that turns are those along axes that turn with it. A
+    numerical failure is an outcome: the history then ends with the last step that was reached.
 
     Parameters
     ----------
     model, scheme
         What moves, a `UnilateralModel`, an `OpeningSystem` or a `RollingModel`, and how it is stepped. The start
         "consistent" means M A0 = F, since no contact presses at t = 0.
-    steps : int
-        Number of steps.
     columns : sequence of str
         Any of `dda.COLUMNS`.
-    options
-        How the contacts are found; the defaults if absent.
 
     Raises
     ------

@@ -64,13 +64,7 @@ class Elimination:
 
 
 def largest_frequency(stiffness: csr_array | LinearOperator) -> float:
-    """Return the largest w of K phi = w^2 phi [rad/s], zero where nothing moves.
-
-    Raises
-    ------
-    OverflowError
-        If a product leaves the range of double precision.
-    """
+    """Return the largest w of K phi = w^2 phi [rad/s], 0 where nothing moves; OverflowError beyond double precision."""
     from scipy.linalg import eigvalsh
     from scipy.sparse.linalg import eigsh
 

@@ -97,10 +97,7 @@ class _Space:
 def amplitudes(equations: Any, rows: ArrayPair, F: Array, g: Array, W2: Complex) -> Complex:
     """Return what rows of z and of lambda observe where (K - W2) z = F, (rows, frequencies).
 
-    Parameters
-    ----------
-    equations
-        z'' + k z + B' lambda = F, B z - C lambda = g, as `Equations` of `dda.bodies.block_system` has them.
+    The equations are the `Equations` of `dda.bodies.block_system`, with B z - C lambda = g.
     """
     from scipy.sparse import diags_array
 

@@ -28,12 +28,7 @@ def graded_modes(M: Array, K: Array) -> ArrayPair:
 def free_modes(M: Array, K: Array) -> ArrayPair:
     """Return w^2 and mass-normalised shapes, one a column, of a body that nothing holds: strains, then rigid motions.
 
-    Parameters
-    ----------
-    M : (n, n) array
-        Inertia.
-    K : (n,) array
-        Diagonal of the stiffness, zero of rigid motions, whose w^2 is exactly zero.
+    The stiffness K is a diagonal, (n,), zero of rigid motions, whose w^2 is exactly zero.
     """
     rigid = K == 0
     strained = ~rigid

@@ -35,7 +35,6 @@ class Block:
     material: Material
 
     def __post_init__(self) -> None:
-        """Check the polygon and freeze its corners."""
         object.__setattr__(self, "vertices", checked_polygon(self.vertices))
 
     @classmethod
@@ -66,26 +65,14 @@ class Block:
         return self.material.density * self.section.area
 
     def edge(self, index: int) -> ArrayPair:
-        """Return the two ends of edge `index`, from corner `index` to the next one [m].
-
-        Raises
-        ------
-        ValueError
-            If there is no such edge.
-        """
+        """Return the two ends of edge `index`, from corner `index` to the next [m]; a ValueError if there is none."""
         n = len(self.corners)
         if not 0 <= index < n:
             raise ValueError(f"edge: must be between 0 and {n - 1}, got {index!r}")
         return self.corners[index], self.corners[(index + 1) % n]
 
     def check_edges(self, base: int, top: int) -> None:
-        """Check that base and top are two edges of the block.
-
-        Raises
-        ------
-        ValueError
-            If they are not.
-        """
+        """Raise ValueError unless base and top are two edges of the block."""
         n = len(self.corners)
         for name, edge in (("base", base), ("top", top)):
             if not 0 <= edge < n:

@@ -28,7 +28,6 @@ class BaseMotion:
     displacement: ArrayLike  # (n, 2) displacement of the base in x and y [m]
 
     def __post_init__(self) -> None:
-        """Check the record."""
         time = np.asarray(self.time, float)
         moved = np.asarray(self.displacement, float)
         if time.ndim != 1 or len(time) < 1 or moved.shape != (len(time), 2):
@@ -62,13 +61,7 @@ def directions_of(motion: BaseMotion | None) -> Array:
 
 @dataclass(frozen=True)
 class Load:
-    """Loads of one block or of a system of blocks, all switched on at t = 0, at once or in a ramp.
-
-    Raises
-    ------
-    ValueError
-        If a number is not finite.
-    """
+    """Loads of one block or of a system of blocks, all switched on at t = 0, at once or in a ramp."""
 
     pressure: float = 0.0  # q, downwards on the top edge [Pa]
     eccentricity: float = 0.0  # shift of the middle of the pressed part towards +x [m]
@@ -79,7 +72,6 @@ class Load:
     ramp: float = 0.0  # time in which pressure, traction and gravity rise linearly from zero; 0: at once [s]
 
     def __post_init__(self) -> None:
-        """Check the numbers."""
         check_finite(
             pressure=self.pressure, eccentricity=self.eccentricity, traction=self.traction, gravity=self.gravity
         )
@@ -117,13 +109,9 @@ def falling(slope: float) -> tuple[float, float]:
 def pressed_part(start: Array, end: Array, eccentricity: float) -> ArrayPair:
     """Return the ends of the pressed part of the top edge.
 
-    It is the longest part whose middle lies `eccentricity` from the middle of the edge, towards
-    +x (towards +y on a vertical edge): the length is L - 2 |eccentricity|, the pressure is the same.
-
-    Raises
-    ------
-    ValueError
-        If nothing of the edge is left.
+    It is the longest part whose middle lies `eccentricity` from the middle of the edge, towards +x (towards +y on a
+    vertical edge): the length is L - 2 |eccentricity|, the pressure is the same. A ValueError if nothing is left of the
+    edge.
     """
     side = end - start
     length = float(np.hypot(*side))

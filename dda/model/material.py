@@ -19,11 +19,6 @@ class Material:
 
     The moduli are products and quotients of 1 - mu, 1 + mu and 1 - 2 mu, each exact or
     correctly rounded near its zero, so that nearly singular materials keep their digits.
-
-    Raises
-    ------
-    ValueError
-        If a number is not finite or out of range, or the hypothesis is unknown.
     """
 
     density: float  # rho [kg/m^3]
@@ -32,7 +27,6 @@ class Material:
     hypothesis: Hypothesis = "plane stress"  # or "plane strain"
 
     def __post_init__(self) -> None:
-        """Check the ranges."""
         check_positive(density=self.density, young=self.young)
         if self.hypothesis not in ("plane stress", "plane strain"):
             raise ValueError(f'hypothesis: must be "plane stress" or "plane strain", got {self.hypothesis!r}')

@@ -36,10 +36,7 @@ class Section:
 def area_integrals(vertices: Array) -> AreaIntegrals:
     """Integrate 1, x, y, x^2, y^2 and xy over a polygon by Green's theorem.
 
-    Parameters
-    ----------
-    vertices : (n, 2) array [m]
-        Corners in counter-clockwise order; the origin should lie near the polygon.
+    Its corners, (n, 2) [m], are counter-clockwise; the origin should lie near them.
     """
     x, y = vertices.T
     X, Y = np.roll(vertices, -1, axis=0).T

@@ -130,7 +130,7 @@ def poses_of(blocks: int) -> Poses:
     return Poses(spin + 0j, spin, stretch, np.zeros((blocks, 3)), J, np.zeros((blocks, 3)))
 
 
-# ---- inertia of a strained block -------------------------------------------------------------------------------------
+# ---- inertia of a strained block ----
 
 
 def row_times(row: Vector, x: Vector, first: int, n: int) -> float:
@@ -156,14 +156,8 @@ def inertia_forces(
 ) -> float:
     """Add what a strained block adds to the equations of its strain modes; write (r', e') into `spin`.
 
-    Returns its kinetic energy less that of the modes alone, p' p / 2 [J].
-
-    Parameters
-    ----------
-    p, a
-        dt v and dt^2 a of all modes.
-    poses
-        Strains, J and gamma of the instant.
+    Returns its kinetic energy less that of the modes alone, p' p / 2 [J]. p and a are dt v and dt^2 a of all modes, the
+    poses have strains, J and gamma of the instant.
     """
     first = blocks.first[i]
     root = blocks.root_inertia[i]
@@ -202,7 +196,7 @@ def pull_of(blocks: Blocks, i: int, k: int, e: Vector) -> float:
     return pull
 
 
-# ---- where a step goes -----------------------------------------------------------------------------------------------
+# ---- where a step goes ----
 
 
 def increments(blocks: Blocks, q: Matrix, x: Vector, chords: Poses, out: Matrix) -> None:

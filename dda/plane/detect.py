@@ -82,10 +82,7 @@ class Detection(NamedTuple):
 def detection_of(polygons: Sequence[Points], moves: Any, law: Any, most: int, size: float) -> Detection:
     """Return what finds contacts of blocks with these corners, at most so many.
 
-    Parameters
-    ----------
-    law : (b, b) array of int
-        Number of the law of two blocks, -1 where they are not looked at; blocks of which neither moves are not.
+    The number of the law of two blocks, (b, b), is -1 where they are not looked at; if neither moves they are not.
     """
     movable = np.array(moves, dtype=np.int64)
     looked_at = np.where(np.logical_or.outer(movable, movable), law, NONE)
@@ -115,10 +112,7 @@ def found_contacts(most: int) -> FoundContacts:
 def keep_contacts(detection: Detection, force: Vector, state: Any, stated: int) -> None:
     """Take the contacts of a step that was accepted for those of the step before.
 
-    Parameters
-    ----------
-    force, state
-        Of the rows after the step, those of so many stated contacts first.
+    Force and state are those of the rows after it, of which so many stated contacts come first.
     """
     contacts = detection.contacts
     previous = detection.previous
@@ -321,12 +315,8 @@ def touch_parts(detection: Detection, p: int, r: int) -> int:
 def add_points(detection: Detection, p: int, r: int, edge: int, point: int, deepest: float) -> int:
     """Add the contacts of two parts at an edge; return how many contacts there are then, or minus an outcome.
 
-    Parameters
-    ----------
-    edge, point
-        Sides: that of the edge, and that which starts from the other part's lowest corner.
-    deepest
-        How deep a corner may be [m].
+    `edge` and `point` are sides: the edge's, and the one that starts from the other part's lowest corner; a corner may
+    be `deepest` [m].
     """
     corners = detection.corners
     sides = detection.sides

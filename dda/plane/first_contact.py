@@ -170,7 +170,6 @@ class Pairs:
     """All corners of a polygon that can touch, beside all edges of another one."""
 
     def __init__(self, outline: Points, other: Points, motion: UniformMotion, motion_of_edges: UniformMotion) -> None:
-        """Take corners from `outline` and edges from `other`."""
         self.ring = without_straight_corners(outline)
         turns = turns_of(outline, self.ring)
         self.corners = [corner for corner, turn in zip(self.ring, turns, strict=True) if turn > 0]

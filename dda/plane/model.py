@@ -44,7 +44,6 @@ class PlaneBlock:
     name: str = ""
 
     def __post_init__(self) -> None:
-        """Check the numbers and the outline."""
         if len(self.velocity) != 2 or not np.all(np.isfinite(self.velocity)):
             raise ValueError(f"velocity: must be two finite numbers, got {self.velocity!r}")
         check_finite(spin=self.spin)
@@ -89,7 +88,6 @@ class ContactSprings:
     tension: float = 0.0  # [N]
 
     def __post_init__(self) -> None:
-        """Check the ranges."""
         if not self.stiffness > 0:
             raise ValueError(f"stiffness: must be positive, got {self.stiffness!r}")
         check_not_negative(shear=self.shear, cohesion=self.cohesion, tension=self.tension)
@@ -134,7 +132,6 @@ class EdgeBond:
     shear: float  # the same along it
 
     def __post_init__(self) -> None:
-        """Check the numbers."""
         for name in ("stiffness", "shear"):
             if not getattr(self, name) > 0:
                 raise ValueError(f"{name}: must be positive, got {getattr(self, name)!r}")
@@ -159,7 +156,6 @@ class PlaneLoad:
     ramp: float = 0.0  # time in which it rises from zero [s]
 
     def __post_init__(self) -> None:
-        """Check the numbers."""
         check_not_negative(ramp=self.ramp)
         for name in ("force", "place", "edge"):
             value = getattr(self, name)
@@ -196,7 +192,6 @@ class PlaneModel:
     found: Any = None  # contacts that are found; None: those that are stated alone
 
     def __post_init__(self) -> None:
-        """Check what the parts refer to."""
         if all(block.held for block in self.blocks):
             raise ValueError("blocks: at least one must move, got none")
         if len(self.gravity) != 2 or not np.all(np.isfinite(self.gravity)):
@@ -224,13 +219,7 @@ class PlaneModel:
         return self.blocks[block].name or f"block {block}"
 
     def edge_of(self, block: int, start: ArrayLike, end: ArrayLike, field: str = "edge") -> int:
-        """Return the edge of a block on which two points lie, by its first corner.
-
-        Raises
-        ------
-        ValueError
-            If there is none, naming the field.
-        """
+        """The edge of a block on which two points lie, by its first corner; a ValueError names the field if none."""
         corners = as_complex(self.blocks[block].block.corners)
         along = np.roll(corners, -1) - corners
         beside = np.zeros(len(corners))  # of the edges' lengths

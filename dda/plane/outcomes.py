@@ -29,17 +29,7 @@ class PlaneContact(NamedTuple):
 def unsettled_contacts(
     model: PlaneModel, march: March, history: History, reached: int, outcome: int
 ) -> tuple[PlaneContact, ...]:
-    """Return the contacts that ended a history.
-
-    Parameters
-    ----------
-    march
-        As the step that failed left it.
-    history
-        The cuts of that step.
-    reached, outcome
-        What the loop over steps returned.
-    """
+    """The contacts that ended a history, by the march as the step that failed left it, and the cuts of that step."""
     found = march.method.detection.contacts
     if outcome == TOO_DEEP:
         return (found_contact(march, found.corner[0], found.edge[0]),)
@@ -69,12 +59,7 @@ def flipping_contacts(march: March, is_cut: bool) -> list[int]:
     """Return the contacts whose states change as the search of the stage that failed goes round, by their numbers.
 
     The search goes on from the states in which it was given up until it comes back to states that it had: those in
-    between are gone through for ever.
-
-    Parameters
-    ----------
-    is_cut
-        Whether that step was shorter than dt.
+    between are gone through for ever. `is_cut`: that step was shorter than dt.
     """
     plane = march.method
     work = march.work

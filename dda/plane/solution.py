@@ -73,8 +73,8 @@ def solve_plane(
 ) -> PlaneResult:
     """Step blocks in the plane.
 
-    A numerical failure is an outcome, not an exception: the history then ends with the last step that was reached. A
-    step whose contacts have no single state is repeated, shorter.
+    A numerical failure is an outcome: the history then ends with the last step that was reached. A step whose contacts
+    have no single state is repeated, shorter.
 
     Parameters
     ----------
@@ -164,7 +164,7 @@ def check_scheme(model: PlaneModel, scheme: Scheme) -> None:
         raise ValueError("stiffness: must be finite in an explicit scheme (alpha = 0), got inf")
 
 
-# ---- a model in numbers ----------------------------------------------------------------------------------------------
+# ---- a model in numbers ----
 
 
 def plane_march(model: PlaneModel, scheme: Scheme, every: int) -> March:
@@ -348,10 +348,7 @@ def edge_of(blocks: Blocks, block: int, edge: int) -> tuple[complex, complex]:
 def start_of(model: PlaneModel, scheme: Scheme, march: March, course: Course) -> PlaneState:
     """Return the state at t = 0: unstrained; a corner that lies behind its edge is pressed by its spring.
 
-    Raises
-    ------
-    ValueError
-        If a corner lies behind an edge that is rigid.
+    Behind an edge that is rigid it is a ValueError.
     """
     plane = march.method
     blocks = plane.blocks
@@ -391,7 +388,7 @@ def start_of(model: PlaneModel, scheme: Scheme, march: March, course: Course) ->
     return state
 
 
-# ---- what comes out --------------------------------------------------------------------------------------------------
+# ---- what comes out ----
 
 
 def contact_columns(model: PlaneModel, march: March, history: History, kept: int) -> tuple[dict[str, Any], Array]:

@@ -104,7 +104,7 @@ class Plane(NamedTuple):
     detection: Detection
 
 
-# ---- one stage -------------------------------------------------------------------------------------------------------
+# ---- one stage ----
 
 
 def make_stage(
@@ -336,7 +336,7 @@ def accept(march: March, memory: PlaneState, before: PlaneState, after: PlaneSta
     copy(places.driven, after.driven)
 
 
-# ---- what is kept ----------------------------------------------------------------------------------------------------
+# ---- what is kept ----
 
 
 def kinetic_excess(march: March, state: PlaneState) -> float:

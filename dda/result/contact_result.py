@@ -139,12 +139,7 @@ def run_fields(
 ) -> dict[str, Any]:
     """Return the fields of a result that are the same for every body.
 
-    Parameters
-    ----------
-    outcome
-        How the history ended, among `dda.contact.rows.OUTCOMES`.
-    clock
-        When the set-up began, and the steps [s].
+    The outcome is among `dda.contact.rows.OUTCOMES`; the clock has when set-up and steps began [s].
     """
     steps = len(history.solves) - 1
     early = () if outcome == FOUND else (f"{OUTCOMES[outcome]} at step {steps + 1}",)

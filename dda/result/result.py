@@ -56,14 +56,8 @@ def linear_result(
 ) -> Result:
     """Return the result of steps of which none may fail; a column is infinite from its first overflow on.
 
-    Parameters
-    ----------
-    clock
-        When the set-up began, and the steps [s].
-    observed : (columns, steps) array
-        What the named columns hold; changed where it overflows.
-    size
-        Size of the loads, without which nothing moves.
+    The clock has when set-up and steps began [s]; what is `observed`, (columns, steps), is changed where it overflows;
+    without the `size` of the loads nothing moves.
     """
     observed += 0.0
     overflow = bound_overflow(observed, size)

@@ -35,16 +35,12 @@ def next_discount(before: float, now: float, floor: float) -> float:
 
 
 def adapted_modes(scheme: Scheme, frequencies: Array, load: Array, steps: int, floor: float) -> Adapted:
-    """Step all modes together from rest under a constant modal load.
+    """Step all modes together from rest under a constant modal load, by a scheme whose own discount is 1.
 
     Parameters
     ----------
-    scheme : Scheme
-        Its own discount is 1.
     frequencies, load : (n,) array
         w [rad/s] and load of the mass-normalised modes.
-    floor : float
-        Least discount [-].
     """
     dt = scheme.step
     k = (dt * frequencies) ** 2

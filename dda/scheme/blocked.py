@@ -77,8 +77,6 @@ def blocked_modes(scheme: Scheme, frequencies: Array, rows: Array, steps: int) -
         w of every mode [rad/s].
     rows : (columns, n) array
         What a mode adds to a column at its static displacement.
-    steps : int
-        Number of steps.
     """
     levels = (steps - 1).bit_length()
     split = min(BLOCK.bit_length() - 1, (levels + 1) // 2)
@@ -137,12 +135,8 @@ def with_all_digits(scheme: Scheme) -> Scheme:
 def _mode(exact: Scheme, w: float, levels: int) -> tuple[Array, tuple[float, float]]:
     """Return the entries of the maps of one mode, (levels, 6), and (u, p) at step 1, p scaled.
 
-    The momentum is measured in the power of two that makes the off-diagonal entries about equal.
-
-    Parameters
-    ----------
-    exact
-        The scheme of `with_all_digits`.
+    The momentum is measured in the power of two that makes the off-diagonal entries about equal. The scheme is that of
+    `with_all_digits`.
     """
     step, (u, p) = _one_step(exact, w)
     b = step[1].bit_length()

@@ -30,13 +30,7 @@ Complex = NDArray[np.complex128]
 
 
 def squared_frequency(scheme: Scheme, omega: ArrayLike) -> Complex:
-    """Return W2 = -A / D of the stepped system [1/s^2]; it tends to w^2 as dt does to zero at gg = 1.
-
-    Parameters
-    ----------
-    omega : array_like
-        Angular frequencies w of the load [rad/s].
-    """
+    """Return W2 = -A / D at frequencies w of the load [rad/s], stepped [1/s^2]; W2 -> w^2 as dt -> 0 at gg = 1."""
     stage = one_stage(scheme)
     forward, velocity_difference, moved = _parts(scheme, omega)
     W2 = -(forward / scheme.step) * (velocity_difference / scheme.step) / moved
@@ -46,13 +40,7 @@ def squared_frequency(scheme: Scheme, omega: ArrayLike) -> Complex:
 
 
 def one_stage(scheme: Scheme) -> Stage:
-    """Return the only stage of a scheme.
-
-    Raises
-    ------
-    ValueError
-        If it has two.
-    """
+    """The only stage of a scheme; a ValueError if it has two."""
     if len(scheme.stages) > 1:
         raise ValueError(f"scheme: must be of one stage for a response of the whole system, got {scheme.name!r}")
     return scheme.stages[0]
@@ -118,12 +106,8 @@ def velocity_factor(scheme: Scheme, omega: ArrayLike) -> Complex:
 def chosen(scheme: Scheme, frequencies: ArrayLike, exact: bool) -> tuple[Complex, Complex]:
     """Return W2 and S at frequencies in Hz, as stepped or what they tend to with dt.
 
-    The limit is w^2 - i c w if kinetic damping keeps its rate c = -ln(gg) / dt, and S = i w.
-
-    Raises
-    ------
-    ValueError
-        If gg is zero, which has no rate.
+    The limit is w^2 - i c w if kinetic damping keeps its rate c = -ln(gg) / dt, and S = i w. Without a rate, gg = 0, it
+    is a ValueError.
     """
     w = 2 * np.pi * np.atleast_1d(np.asarray(frequencies, float))
     if not exact:

@@ -41,8 +41,6 @@ def named_scheme(
         dt [s].
     gg : float
         Share of the velocity that a whole step starts with [-].
-    start : str
-        Initial acceleration, "consistent" or "zero".
     rho_inf : float, optional
         Spectral radius at infinite frequency [-], of all but the leapfrog.
     split : float, optional

@@ -67,7 +67,6 @@ class Scheme:
     stages: tuple[Stage, ...] = field(init=False, repr=False, compare=False)  # what a step is made of
 
     def __post_init__(self) -> None:
-        """Check the ranges."""
         rows = self.table.stages if self.table else (newmark_stage(self.alpha, self.delta),)
         object.__setattr__(self, "stages", tuple(row._replace(gg=self.gg, step=self.step) for row in rows))
         check_not_negative(alpha=self.alpha, delta=self.delta)
@@ -206,12 +205,8 @@ def stepped_modes(
 ) -> Array:
     """Return D of every mode and step from rest, (n, steps), measured from the base where that moves.
 
-    With x = D + R y the spring forces are those of D alone, and the scheme for x becomes
-
-        S (D1 - D) = gg P + (1/2 - alpha) f + alpha (F - k D) - R (y1 - y),
-
-    with the momentum P and the inertia force f of x; no spring force is a difference of
-    large numbers.
+    With x = D + R y the spring forces are those of D alone, P and f those of x, and the right-hand side of the first
+    line above gets - R (y1 - y): no spring force is a difference of large numbers.
 
     Parameters
     ----------

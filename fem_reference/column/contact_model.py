@@ -12,13 +12,7 @@ from fem_reference.problem.checks import require
 
 @dataclass(frozen=True)
 class ColumnContact:
-    """A face across the column that opens or slips, per unit of area.
-
-    Raises
-    ------
-    ValueError
-        For a value out of its range, naming field, rule and value.
-    """
+    """A face across the column that opens or slips, per unit of area."""
 
     height: float  # above the base [m]
     stiffness: float  # k [Pa/m]; inf: a rigid stop, or faces that move alike until they slip
@@ -32,13 +26,7 @@ class ColumnContact:
 
 @dataclass(frozen=True)
 class ContactColumn:
-    """A column on contacts.
-
-    Raises
-    ------
-    ValueError
-        For numbers that do not go together.
-    """
+    """A column on contacts."""
 
     ground: Ground  # its joints are bonded springs; an impedance makes a half-space
     law: Literal["unilateral", "frictional"]

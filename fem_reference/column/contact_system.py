@@ -1,7 +1,7 @@
 """A meshed column on its contacts as a system of rows (`fem_reference.contact.system`), and where it begins.
 
-The runs of elements between the contacts are meshes of their own, the bodies of the system. What is prescribed has four
-parts: displacement, velocity and acceleration of the base, and the pressure on the surface.
+The runs of elements between the contacts are meshes of their own, the bodies of the system. What is prescribed are the
+four parts of an `Excitation`.
 """
 
 from __future__ import annotations
@@ -85,13 +85,7 @@ def system_of(
 
 
 def stepper_of(column: ContactColumn, system: ContactSystem, scheme: Scheme, compiled: Any = None) -> ContactStepper:
-    """The scheme on the column.
-
-    Raises
-    ------
-    ValueError
-        If a contact is rigid and the scheme explicit.
-    """
+    """The scheme on the column; a `ValueError` if a contact is rigid and the scheme explicit."""
     if scheme.explicit and np.any(system.rows.compliance == 0):
         field, value = ("alpha", 0) if scheme.table is None else ("scheme", scheme.name)
         raise ValueError(f"{field}: must be positive where contacts are rigid, got {value}")

@@ -43,27 +43,18 @@ def solve_contacts(
     columns: Sequence[str] = (DISPLACEMENT, PRESSURE),
     heights: Sequence[float] = (),
 ) -> ColumnContactResult:
-    """Step a column of contacts from its starting velocities.
+    """Step a column of contacts from its starting velocities; what is not named here is as in `solve_line`.
 
-    A numerical failure is an outcome, not an exception: the history then ends with the last step that was reached.
+    A numerical failure is an outcome: the history then ends with the last step that was reached.
 
     Parameters
     ----------
-    elements, degree
-        Number of elements of each stratum, and their degree.
-    excitation
-        What drives it at the scheme's `stage_times`: t = 0 and the ends of all stages.
     columns
         ``displacement`` of the top [m], ``contact_pressure``, the force of the base on the column [Pa], and at the
         heights ``displacement_1`` ... [m], ``velocity_1`` ... [m/s], ``stress_1`` ... [Pa, compression positive], and
         where a contact is ``force_1`` ... [Pa, on what is above], ``gap_1`` ... and ``slip_1`` ... [m].
     heights
         Above the base [m]; where two faces meet, the lower one is observed.
-
-    Raises
-    ------
-    ValueError
-        For an unknown column, a height outside, or a mesh that is not possible.
     """
     column.ground.check_request(columns, heights, ("displacement", "velocity", "stress", *OF_CONTACTS))
     of_contacts = [_contact_of(column, name, heights) for name in columns]

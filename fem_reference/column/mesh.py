@@ -1,7 +1,6 @@
 """Line elements of a layered column: mass and stiffness by scikit-fem, springs where the column is jointed.
 
-Between two joints the displacement is continuous: each such part is a mesh of its own, and the springs join the nodes
-that face each other.
+Each part between two joints is a mesh of its own; the springs join the nodes that face each other.
 """
 
 from __future__ import annotations
@@ -96,22 +95,7 @@ class LineMesh:
 
 
 def line_mesh(ground: Ground, elements: Sequence[int], degree: int, springs: bool = True) -> LineMesh:
-    """Mesh a column.
-
-    Parameters
-    ----------
-    elements
-        Number of elements of each stratum.
-    degree
-        Of the elements, 1 or 2.
-    springs
-        Whether its joints have their springs; else they only cut the column.
-
-    Raises
-    ------
-    ValueError
-        For another degree.
-    """
+    """Mesh a column by so many elements of each stratum, of degree 1 or 2; without `springs` joints only cut it."""
     require(degree in ELEMENTS, "degree", "must be 1 or 2", degree)
     near = NEAR * ground.height
     heights = sorted(height for height, _ in ground.joints)
@@ -133,7 +117,6 @@ def line_mesh(ground: Ground, elements: Sequence[int], degree: int, springs: boo
 
 
 def _joined(ground: Ground, parts: list[Part], springs: bool) -> LineMesh:
-    """Put the parts together, with the springs between them."""
     size = parts[-1].first + parts[-1].size
     base = parts[0].end(top=False)
     ordered = [stiffness for _, stiffness in sorted(ground.joints)]
@@ -154,7 +137,6 @@ def _joined(ground: Ground, parts: list[Part], springs: bool) -> LineMesh:
 
 
 def _springs(faces: Sequence[tuple[int, int]], stiffness: Sequence[float], size: int) -> csr_array:
-    """Matrix of springs between pairs of unknowns."""
     i, j = np.array(faces, dtype=int).reshape(-1, 2).T
     k = np.array(stiffness, float)
     places = np.concatenate([i, j, i, j]), np.concatenate([i, j, j, i])

@@ -39,13 +39,7 @@ class Stratum(Elastic):
 
 @dataclass(frozen=True)
 class Ground:
-    """A column of strata, laterally uniform and not strained sideways, per unit of area.
-
-    Raises
-    ------
-    ValueError
-        For a number out of range, or a joint outside of the column.
-    """
+    """A column of strata, laterally uniform and not strained sideways, per unit of area."""
 
     strata: tuple[Stratum, ...]  # from the base upwards
     motion: Literal["pressure", "shear"]
@@ -76,21 +70,9 @@ class Ground:
         return np.cumsum([stratum.thickness for stratum in self.strata])
 
     def check_request(self, columns: Sequence[str], heights: Sequence[float], parts: Sequence[str] = PARTS) -> None:
-        """Raise for a column that is not available, or a height that is not in the column.
+        """Raise a `ValueError` for a column that is not available, or a height [m] that is not in the column.
 
-        Parameters
-        ----------
-        columns
-            That are asked for: of the surface, of the base, or of a height by its number.
-        heights
-            Where the column is observed [m].
-        parts
-            What is known of a height.
-
-        Raises
-        ------
-        ValueError
-            If one is neither.
+        `parts` is what is known of a height.
         """
         known = (DISPLACEMENT, PRESSURE, *(f"{part}_{n + 1}" for part in parts for n in range(len(heights))))
         for name in columns:

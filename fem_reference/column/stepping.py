@@ -42,8 +42,6 @@ def solve_line(
     ----------
     elements, degree
         Number of elements of each stratum, and their degree.
-    excitation
-        What drives it at the scheme's `stage_times`: t = 0 and the ends of all stages.
     columns
         Of the surface and the base, and ``displacement_1`` ..., ``stress_1`` ... of the heights.
     heights
@@ -100,13 +98,7 @@ class Model:
         return [csr_array(matrix[self.free][:, self.free]) for matrix in (self.mesh.M, C, self.mesh.K)]
 
     def check_scheme(self, scheme: Scheme) -> None:
-        """Raise for a scheme that has no velocity for the dashpot of a half-space.
-
-        Raises
-        ------
-        ValueError
-            If its velocity is that of half a step before.
-        """
+        """Raise a `ValueError` for a half-space and a scheme whose velocity is that of half a step before."""
         has_velocity = not scheme.staggered or self.impedance is None
         require(has_velocity, "scheme", "must have the velocity that a half-space's dashpot needs", scheme.name)
 
@@ -131,7 +123,7 @@ class Observation(NamedTuple):
 
 
 def observed_by(model: Model, columns: Sequence[str], heights: Sequence[float]) -> Observation:
-    """Return how columns of a history are observed; of those that only a contact knows nothing is."""
+    """How columns of a history are observed; of those that only a contact knows nothing is."""
     mesh = model.mesh
     motion = np.zeros((3, len(columns), mesh.size))
     parts = np.zeros((len(columns), 4))
@@ -158,7 +150,7 @@ def observed_by(model: Model, columns: Sequence[str], heights: Sequence[float]) 
 
 
 def histories(model: Model, stepper: Stepper, excitation: Excitation, observed: Observation) -> Array:
-    """Return the observed columns at every step, shape (columns, steps)."""
+    """The observed columns at every step, shape (columns, steps)."""
     parts = excitation.parts
     loads = parts @ model.loads().T
     stages = len(stepper.solves)
@@ -170,7 +162,7 @@ def histories(model: Model, stepper: Stepper, excitation: Excitation, observed: 
 
 
 def highest_frequency(ground: Ground, elements: Sequence[int], degree: int) -> float:
-    """Return the highest natural frequency [rad/s], the base held; on a half-space the foot of the column is free."""
+    """The highest natural frequency [rad/s], the base held; on a half-space the foot of the column is free."""
     mesh = line_mesh(ground, elements, degree)
     massless = mesh.M.diagonal()[mesh.base_node] == 0  # a joint lies on it
     M, _, K = Model(mesh, None if massless else ground.impedance).matrices()

@@ -30,18 +30,9 @@ def line_response(
     columns: Sequence[str] = (DISPLACEMENT, PRESSURE),
     exact: bool = False,
 ) -> dict[str, Complex]:
-    """Complex amplitudes of columns of a history.
+    """Complex amplitudes of columns at frequencies of the drive [Hz]; `exact`: as the mesh answers in continuous time.
 
-    Parameters
-    ----------
-    elements, degree
-        Number of elements of each stratum, and their degree.
-    frequencies
-        Of the drive [Hz].
-    at_top
-        Per pascal on the surface; else per metre of the base's motion, or of the wave that comes up.
-    exact
-        As the mesh answers in continuous time.
+    They are per pascal on the surface if `at_top`, else per metre of the base's motion, or of the wave that comes up.
 
     Raises
     ------

@@ -23,7 +23,7 @@ from fem_reference.scheme import stage
 from fem_reference.scheme.stage import Motion
 
 LONG = 50_000
-"""Number of steps from which on a history is stepped in natural modes, compiled: the first time that takes seconds."""
+"""Steps from which on a history is stepped in natural modes, compiled: the first time that takes seconds."""
 PLAIN = ("fall_back", "singly", "only_contact", "step_change", "held_change", "part_of")
 """Functions that no history compiles."""
 APART = (
@@ -41,7 +41,7 @@ MESSAGE_DELAY = 2.0
 """Seconds of compiling before it is said; code that was kept is read in less."""
 logger = logging.getLogger("fem_reference")
 MODES = 2500
-"""Greatest number of unknowns that a long history steps in natural modes: their shapes are a full matrix."""
+"""Most unknowns that a long history steps in natural modes: their shapes are a full matrix."""
 MODULES = (stage, law, iteration, steps_of_march)
 FUNCTIONS = {
     (module.__name__, name): value
@@ -55,17 +55,7 @@ FUNCTIONS = {
 def prepared(
     system: ContactSystem, steps: int, full: bool = False
 ) -> tuple[ContactSystem, Callable[..., Any] | None, tuple[str, ...]]:
-    """A system for a history of so many steps, in natural modes where it is long; what is compiled of the march; notes.
-
-    Parameters
-    ----------
-    system
-        The bodies on their contacts.
-    steps
-        Number of steps.
-    full
-        Whether nothing is saved.
-    """
+    """A system for so many steps, in natural modes where they are many and not `full`; the march compiled; notes."""
     unknowns = len(system.F)
     modal = not full and system.C is None and unknowns <= MODES and steps >= LONG
     run = None

@@ -42,10 +42,7 @@ def make_steps(
 ) -> Iterator[tuple[Record, Marched]]:
     """Yield what was kept of the steps piece by piece, and how each piece has ended; the last may be cut short.
 
-    Parameters
-    ----------
-    cut
-        How a step without a contact is repeated; it ends the history if None.
+    A step without a contact is repeated as `cut` says; it ends the history if None.
     """
     completed = 0
     outcome = CONVERGED
@@ -65,23 +62,10 @@ def make_steps(
 
 
 def cut_step(stepper: ContactStepper, marched: Marched, cut: Cut, row: Record) -> Marched:
-    """Make a step without a contact in shorter pieces; a piece without one is repeated shorter, as are those after it.
+    """Make a step that has failed in one piece in shorter pieces, and fill its `row`.
 
-    Parameters
-    ----------
-    stepper
-        The bodies and the scheme.
-    marched
-        How the step in one piece has failed, with the state before it.
-    cut
-        Factor and limit of the cuts.
-    row
-        What is kept of the step (filled), one row.
-
-    Returns
-    -------
-    Marched
-        State at the end of the step, or before the piece that failed. The next step is tried in one piece again.
+    A piece without a contact is repeated shorter, as are those after it; where the shortest has none the state is that
+    before it. The next step is tried in one piece again.
     """
     solves = marched.solves
     cuts = 0

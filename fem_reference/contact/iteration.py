@@ -34,7 +34,7 @@ UNSETTLED = 4
 """How a step ends: with its contact, with no consistent set of states, with several, with numbers that overflow;
 where there is no fallback, without an end of the iteration."""
 ENUMERATED = 256
-"""Greatest number of sets of states that are all tried: eight points that hold, four that may slide."""
+"""Most sets of states that are all tried: eight points that hold, four that may slide."""
 ALIKE = 1e-9
 """Difference of forces below which two sets of states are one contact, over the largest force."""
 
@@ -46,23 +46,9 @@ Fallback = Callable[[Law, Trial, Array, Array, States, States], Contact]
 def find_contact(
     law: Law, equations: Equations, q: Array, gap: Array, states: States, fallback: Fallback | None
 ) -> Contact:
-    """Contact of a step: all states are corrected at once until none changes.
+    """Contact of a step: all states are corrected at once until none changes, from the arguments of `law.solution`.
 
-    Parameters
-    ----------
-    law, equations
-        The law, and equations that may serve again.
-    q
-        Relative displacements without forces at the end of the step, beyond the references [m].
-    gap, states
-        Relative displacements and states at its start.
-    fallback
-        What follows where that does not end within `law.limit` solutions.
-
-    Returns
-    -------
-    tuple
-        Forces and places; states; number of solutions; how it has ended.
+    Where that does not end within `law.limit` solutions the `fallback` follows.
     """
     trial = solution(law, equations, q, gap, states, states)
     guess = states

@@ -45,7 +45,7 @@ AT_UPPER = 1
 
 A row whose partner is open is inside."""
 PASSES = 60
-"""Greatest number of corrections of the crossings for given states."""
+"""Most corrections of the crossings for given states."""
 SETTLED = 1e-13
 """Change of phi at which the crossings are settled [-]."""
 ROUNDED = 1e-12
@@ -62,8 +62,8 @@ class Law(NamedTuple):
     friction: Array  # tan(angle) that the force of the partner counts in the bounds [-]
     partner: Indices  # row before it that presses it; its own number where there is none
     slips: Flags  # whether it slips at its bounds, and does not open
-    limit: int  # greatest number of solutions of the open-close iteration [-]
-    single_limit: int  # then of changes of one point after the other [-]
+    limit: int  # most solutions of the open-close iteration [-]
+    single_limit: int  # then changes of one point after the other [-]
 
 
 class Equations(NamedTuple):
@@ -85,13 +85,13 @@ class Trial(NamedTuple):
 
 
 def is_pressed(law: Law, states: States, row: int) -> bool:
-    """Tell whether a row has no partner, or one that is closed."""
+    """Whether a row has no partner, or one that is closed."""
     partner = law.partner[row]
     return bool(partner == row or states[partner] == INSIDE)
 
 
 def equations_of(law: Law, states: States, phi: Array) -> Equations:
-    """Return the equations of given states, solved.
+    """The equations of given states, solved.
 
     phi q + (phi W + c) N = 0 of rows inside, N = bound + tan(angle) N_p of those at a bound, N = 0 of those whose
     partner is open. Divided by its size each row is as good as any other for the pivots; phi and c may be zero.
@@ -140,14 +140,8 @@ def crossed(force: float, gap: float, compliance: float) -> float:
 def solution(law: Law, equations: Equations, q: Array, gap: Array, states: States, guess: States) -> Trial:
     """Forces and places for guessed states, with the crossings that belong to them: phi = phi(forces(phi)).
 
-    Parameters
-    ----------
-    equations
-        That may serve again.
-    q
-        Relative displacements without forces, beyond the references [m].
-    gap, states
-        Relative displacements and states at the start of the step.
+    `q` are the relative displacements without forces, beyond the references, `gap` those at the start of the step [m],
+    with their `states`; `equations` serve again if they are those of the guess.
     """
     count = len(q)
     phi = np.ones(count)

@@ -62,17 +62,20 @@ the ground on the bodies [J]; how many they are."""
 
 
 class ContactStage(NamedTuple):
-    """The bodies on their contacts in one stage of one length of step; operators know products with vectors."""
+    """The bodies on their contacts in one stage of one length of step; operators know products with vectors.
+
+    B, F, pushes and ground are those of `fem_reference.contact.system.ContactSystem`.
+    """
 
     stage: Stage
     body: Body
     law: Law
-    B: Any  # rows of the relative displacements, shape (rows, unknowns)
+    B: Any
     response: Any  # S^-1 B', over 2 alpha for implicit contact, shape (unknowns, rows)
     impulse: Any  # M^-1 B' for implicit contact, else anything
-    F: Array  # constant load [N], shape (unknowns,)
-    pushes: Any  # load of a unit of each part of what is prescribed, shape (unknowns, parts)
-    ground: Array  # displacement of the ground of each row for a unit of each part, shape (rows, parts)
+    F: Array
+    pushes: Any
+    ground: Array
     h: float  # length of step [s]
     gg: float  # factor on the velocity for it [-]
     ratio: float  # it over the scheme's own [-]
@@ -139,23 +142,16 @@ def march(
     record: Record,
     fallback: Fallback | None = None,
 ) -> tuple[ContactState, int, int, int]:
-    """Make as many steps as the record has rows, while they have a contact and finite numbers.
+    """Make as many steps as the record has rows, and fill it, while they have a contact and finite numbers.
+
+    Returns the state after the completed steps, their number, the solutions of the last step, and how it has ended.
 
     Parameters
     ----------
-    stages, watch, state
-        The bodies in each stage of a step, what is observed, and the state to begin with.
     prescribed
         What is prescribed at the ends of the stages, shape (steps, stages, parts).
-    record
-        What is kept of each step (filled).
     fallback
         What finds the contact of a stage whose iteration does not end, `fall_back`; the march ends there if None.
-
-    Returns
-    -------
-    tuple
-        State after the completed steps, their number, solutions of the contact in the last step, how it has ended.
     """
     solves = 0
     equations = equations_of(stages[0].law, state.states, np.ones(len(state.force)))

@@ -73,13 +73,7 @@ class ContactModel:
 
 @dataclass(frozen=True)
 class Friction:
-    """Coulomb's friction along the base, |T| <= tan(angle) N + cohesion times a point's length of the base.
-
-    Raises
-    ------
-    ValueError
-        For a value out of its range, naming field, rule and value.
-    """
+    """Coulomb's friction along the base, |T| <= tan(angle) N + cohesion times a point's length of the base."""
 
     angle: float  # friction angle [deg], from 0 to below 90
     cohesion: float = 0.0  # shear stress that a closed base bears without any pressure [Pa]
@@ -95,14 +89,7 @@ class Friction:
 
 
 def build(problem: Problem, full: bool = False) -> ContactModel:
-    """Model of the block on points, of one column of elements where all vertical lines move alike.
-
-    Parameters
-    ----------
-    problem
-        The block; its foundation says where the points are.
-    full
-        Model the whole block in any case.
+    """Model of the block on points, of one column of elements where all vertical lines move alike, unless `full`.
 
     Raises
     ------
@@ -115,20 +102,14 @@ def build(problem: Problem, full: bool = False) -> ContactModel:
 
 
 def column(problem: Problem) -> ContactModel:
-    """One column of elements, v(y) on a line, with one contact point: matrices E W (v', v') and rho W (v, v).
-
-    Raises
-    ------
-    ValueError
-        If the block is not an upright rectangle.
-    """
+    """One column of elements, v(y) on a line, with one contact point: matrices E W (v', v') and rho W (v, v)."""
     line = line_of(problem)
     size = len(line.height)
     one = np.ones(size)
     return ContactModel(
         problem=problem,
         M=line.mass,
-        K=problem.young * line.stretch,  # with mu = 0 the modulus of a bar, lam + 2 G, is E
+        K=problem.young * line.stretch,
         F=line.load(problem),
         sides=(csr_array(line.base[None]), csr_array((1, size))),
         share=np.ones(1),
@@ -140,13 +121,7 @@ def column(problem: Problem) -> ContactModel:
 
 
 def whole(problem: Problem) -> ContactModel:
-    """The whole block.
-
-    Raises
-    ------
-    ValueError
-        If the block cannot be meshed.
-    """
+    """The whole block."""
     assembled = assemble(problem)
     basis = assembled.basis
     base = block_mesh(problem).base
@@ -175,7 +150,7 @@ def whole(problem: Problem) -> ContactModel:
 
 
 def highest_closed_frequency(problem: Problem, full: bool) -> float:
-    """Return the largest natural frequency while every point of the base is closed and sticks [rad/s].
+    """The largest natural frequency while every point of the base is closed and sticks [rad/s].
 
     A point that opens or slides takes its springs away, which lowers every frequency: the springs of all bound every
     contact state.

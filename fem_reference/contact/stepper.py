@@ -21,12 +21,12 @@ from fem_reference.scheme.stage import Body
 AVERAGE = (0.25, 0.5)
 """Alpha and delta of average acceleration."""
 KEPT = 8
-"""Greatest number of shorter steps whose matrices are kept."""
+"""Most shorter steps whose matrices are kept."""
 DENSE = 256
-"""Greatest number of rows whose responses are kept, eight bytes an unknown each."""
+"""Most rows whose responses are kept, eight bytes an unknown each."""
 SINGLY = 4
 SINGLY_UNIQUE = 100
-"""Greatest number of changes of one point after the other, over the number of points: with friction, and without."""
+"""Most changes of one point after the other, over the number of points: with friction, and without."""
 
 
 class Marched(NamedTuple):
@@ -40,18 +40,12 @@ class Marched(NamedTuple):
 
 @dataclass
 class ContactStepper:
-    """The scheme applied to bodies on contacts, with its factorisations made once for each length of step.
-
-    Raises
-    ------
-    ValueError
-        If the scheme is not the rule's.
-    """
+    """The scheme applied to bodies on contacts; a scheme that is not the rule's is a `ValueError`."""
 
     system: ContactSystem
     scheme: Scheme
-    limit: int = 6  # greatest number of solutions of the open-close iteration [-]
-    single_limit: int | None = None  # then of changes of one point after the other [-]; None: as many as may be needed
+    limit: int = 6  # most solutions of the open-close iteration [-]
+    single_limit: int | None = None  # then changes of one point after the other [-]; None: as many as may be needed
     rule: str = "newmark"  # or ``"implicit"``: the force of the step's end, and average acceleration of the bodies
     energies: bool = False  # whether energies are kept
     losses: bool = False  # whether energies lost are
@@ -80,16 +74,9 @@ class ContactStepper:
         force: Array | None = None,
         pull: Callable[[Any, Array], tuple[Array, Array]] | None = None,
     ) -> ContactState:
-        """State at t = 0.
+        """State at t = 0 of a velocity [m/s] and the rows' places and states, unstrained without `D` [m] or `force`.
 
-        Parameters
-        ----------
-        V, D
-            Velocity and displacement of the unknowns [m/s, m]; unstrained without `D`.
-        place, states, force
-            Of the rows; they bear nothing without `force`.
-        pull
-            What finds forces that come at once, of M^-1 and the acceleration without them; returns both with them.
+        `pull` finds forces that come at once, of M^-1 and the acceleration without them; it returns both with them.
         """
         system = self.system
         D = np.zeros_like(V) if D is None else D
@@ -137,10 +124,7 @@ class ContactStepper:
         )
 
     def march(self, state: ContactState, record: Record, ratio: float = 1.0) -> Marched:
-        """Make as many steps as the record has rows, of a `ratio` of the scheme's own length.
-
-        The rows of the completed steps are filled.
-        """
+        """As `march`, for steps of a `ratio` of the scheme's own length."""
         stages = self._stages(ratio)
         steps = len(record.solves)
         positions = state.position + ratio * np.arange(float(steps))
@@ -167,7 +151,6 @@ class ContactStepper:
         return 1 / matrix if self.system.to_modes is not None else Operator(self.work.factor(matrix))
 
     def _stages(self, ratio: float) -> tuple[ContactStage, ...]:
-        """The stages of a step of a ratio of the scheme's own length."""
         if ratio in self._lengths:
             return self._lengths[ratio]
         if len(self._lengths) > KEPT:

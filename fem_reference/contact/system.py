@@ -17,14 +17,14 @@ from fem_reference.scheme.stage import Motion
 
 
 class ContactRows(NamedTuple):
-    """What rows obey (`fem_reference.contact.law`), each of shape (rows,)."""
+    """What rows obey: the numbers of a `fem_reference.contact.law.Law` that no scheme changes."""
 
-    compliance: Array  # 1 / k [m/N]
-    lower: Array  # bounds of the force but for friction [N]
+    compliance: Array
+    lower: Array
     upper: Array
-    friction: Array  # tangent of the angle [-]
-    partner: Indices  # row that presses this one; its own number where there is none
-    slips: Flags  # whether it slips at its bounds, and does not open
+    friction: Array
+    partner: Indices
+    slips: Flags
 
 
 def opening_rows(compliance: Array) -> ContactRows:
@@ -43,18 +43,10 @@ def slipping_rows(compliance: Array, strength: Array) -> ContactRows:
 def point_rows(
     stiffness: Array, shear_stiffness: Array, tangent: float | None, cohesion: Array, bonded: bool = False
 ) -> ContactRows:
-    """Rows of points: normal ones, and where they have springs of shear those of these.
+    """Rows of points, which never open if `bonded`: normal ones, and where they have springs of shear those of these.
 
-    Parameters
-    ----------
-    stiffness, shear_stiffness
-        Of each point [N/m].
-    tangent
-        Of the angle of friction; None: what is closed never slips.
-    cohesion
-        Shear force that each point bears without pressure [N].
-    bonded
-        Whether they never open.
+    The stiffness is that of each point [N/m]; `tangent` is that of the angle of friction, None of what never slips;
+    `cohesion` is the shear force that each point bears without pressure [N].
     """
     compliance = 1 / stiffness
     unlimited = np.full(len(stiffness), np.inf)

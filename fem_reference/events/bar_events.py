@@ -31,11 +31,11 @@ class BarHistory:
     """The motion at given instants, each array of shape (times,)."""
 
     time: Array  # instants [s]
-    displacement: Array  # displacement of the mid-height [m]
+    displacement: Array  # of the mid-height [m]
     gap: Array  # gap w under the base [m], negative when pressed
     contact_pressure: Array  # N [Pa]
-    mean_velocity: Array  # velocity averaged over the height [m/s]
-    impulse: Array  # integral of the contact pressure over the time so far [Pa s]
+    mean_velocity: Array  # over the height [m/s]
+    impulse: Array  # of the contact pressure so far [Pa s]
 
 
 @dataclass(frozen=True)
@@ -48,13 +48,7 @@ class BarMotion:
     switches: tuple[Switch, ...]  # openings and closings of the base, ``corner`` being ``"base"``, in the order of time
 
     def at(self, times: ArrayLike) -> BarHistory:
-        """The motion at instants in any order.
-
-        Raises
-        ------
-        ValueError
-            If an instant is not from 0 to the end.
-        """
+        """The motion at instants from 0 to the end, in any order."""
         problem = self.problem
         t = instants(times, self.bars.end)
         state = self.bars.at(t)
@@ -69,26 +63,7 @@ class BarMotion:
 
 
 def solve(problem: BarProblem, end: float, limit: int = 10_000, work: Work | None = None) -> BarMotion:
-    """The exact motion of a bar from t = 0 to `end` [s].
-
-    Parameters
-    ----------
-    problem
-        The bar, its base spring and its loads.
-    end
-        Last instant [s].
-    limit
-        Greatest number of switches.
-    work
-        Counts the terms of series, and bounds them; None: without a bound.
-
-    Raises
-    ------
-    ValueError
-        If `end` is not positive and finite.
-    HorizonError
-        If the motion cannot be followed to its end; see `bars_events.solve`.
-    """
+    """The exact motion of a bar from t = 0 to `end` [s]; arguments and errors are those of `bars_events.solve`."""
     bar = Bar(problem.height, problem.density, problem.young, problem.velocity)
     spring = BarJoint("unilateral", problem.base_stiffness / problem.width, problem.gap)
     one_bar = BarsProblem((bar,), (spring,), problem.gravity, top=constant(problem.pressure))

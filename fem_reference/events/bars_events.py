@@ -39,31 +39,31 @@ KINDS = {OPEN: "opens", CLOSED: "closes"}
 
 @dataclass(frozen=True)
 class BarsHistory:
-    """The motion at given instants."""
+    """The motion at given instants, arrays of shape (bars, times)."""
 
     time: Array  # instants [s], shape (times,)
-    mean_velocity: Array  # of each bar [m/s], shape (bars, times)
-    force: Array  # N of each joint, or T on what is above; 0 where nothing is below [Pa], shape (bars, times)
-    gap: Array  # gap y, negative where a spring is pressed, 0 of a joint that does not open [m], shape (bars, times)
-    slip: Array  # slip r, 0 of a joint that does not slip [m], shape (bars, times)
+    mean_velocity: Array  # of each bar [m/s]
+    force: Array  # N of each joint, or T on what is above; 0 where nothing is below [Pa]
+    gap: Array  # gap y, negative where a spring is pressed, 0 of a joint that does not open [m]
+    slip: Array  # slip r, 0 of a joint that does not slip [m]
 
 
 @dataclass(frozen=True)
 class JointHistory:
-    """A joint at given instants."""
+    """A joint at given instants, arrays of shape (times,)."""
 
-    force: Array  # N, or T on what is above [Pa], shape (times,)
-    gap: Array  # y [m], shape (times,)
-    slip: Array  # r [m], shape (times,)
+    force: Array  # N, or T on what is above [Pa]
+    gap: Array  # y [m]
+    slip: Array  # r [m]
 
 
 @dataclass(frozen=True)
 class PointHistory:
-    """A point of a bar at given instants."""
+    """A point of a bar at given instants, arrays of shape (times,)."""
 
-    displacement: Array  # u [m], shape (times,)
-    velocity: Array  # rate of u [m/s], shape (times,)
-    stress: Array  # compression positive, of the shear the stress on what is above [Pa], shape (times,)
+    displacement: Array  # u [m]
+    velocity: Array  # rate of u [m/s]
+    stress: Array  # compression positive, of the shear the stress on what is above [Pa]
 
 
 @dataclass(frozen=True)
@@ -79,13 +79,7 @@ class BarsMotion:
     down: tuple[Wave, ...]  # d of each bar, from its top
 
     def at(self, times: ArrayLike) -> BarsHistory:
-        """The motion at instants in any order.
-
-        Raises
-        ------
-        ValueError
-            If an instant is not from 0 to `end`.
-        """
+        """The motion at instants from 0 to the end, in any order."""
         bars = range(len(self.problem.bars))
         velocity = self._rows(times, lambda time: [self._mean_velocity(i, time) for i in bars])
         joints = [self.joint(number, times) for number in bars]
@@ -93,19 +87,13 @@ class BarsMotion:
         return BarsHistory(instants(times, self.end), velocity, *rows)
 
     def _rows(self, times: ArrayLike, row: Callable[[arb], Sequence[float]]) -> Array:
-        """Numbers of an instant at instants in any order, shape (numbers, times)."""
+        """Numbers of an instant at instants until `end`, shape (numbers, times)."""
         t = instants(times, self.end)
         with precision(bits_of(self.digits)):
             return np.array([row(arb(s)) for s in t.tolist() or [0.0]]).T[:, : len(t)]
 
     def joint(self, number: int, times: ArrayLike) -> JointHistory:
-        """One joint at instants in any order.
-
-        Raises
-        ------
-        ValueError
-            If an instant is not from 0 to `end`.
-        """
+        """One joint at instants from 0 to `end`, in any order."""
         joint = self.joints[number]
 
         def row(time: arb) -> list[float]:
@@ -119,13 +107,7 @@ class BarsMotion:
         return JointHistory(*self._rows(times, row))
 
     def impulse(self, number: int, times: ArrayLike) -> Array:
-        """Integral of the force of a joint from t = 0 to instants in any order [Pa s], shape (times,).
-
-        Raises
-        ------
-        ValueError
-            If an instant is not from 0 to `end`.
-        """
+        """Integral of the force of a joint from t = 0 to instants until `end` [Pa s], shape (times,)."""
         joint = self.joints[number]
         data = self.problem.bars[number]
 
@@ -140,12 +122,9 @@ class BarsMotion:
         return np.asarray(self._rows(times, row)[0])
 
     def point(self, bar: int, height: float, times: ArrayLike) -> PointHistory:
-        """A point of a bar, its height above the foot of the bar [m], at instants in any order.
+        """A point of a bar, its height above the foot of the bar [m], at instants from 0 to `end`.
 
-        Raises
-        ------
-        ValueError
-            If an instant is not from 0 to `end`, or the height is not in the bar.
+        A `ValueError` for an instant or a height elsewhere.
         """
         data = self.problem.bars[bar]
         if not 0 <= height <= data.length:
@@ -181,7 +160,7 @@ class BarsMotion:
 
 
 def least_terms(problem: BarsProblem, end: float) -> float:
-    """Return how many terms of series a motion takes at least, in two computations, with its springs closed.
+    """How many terms of series a motion takes at least, in two computations, with its springs closed.
 
     A joint goes on at least once in the time of a wave along a bar beside it, and looks for a fall in intervals over
     which the decay of its spring is a power series.
@@ -200,32 +179,20 @@ def least_terms(problem: BarsProblem, end: float) -> float:
 def solve(
     problem: BarsProblem, end: float, digits: int = DIGITS, limit: int = 10_000, work: Work | None = None
 ) -> BarsMotion:
-    """The exact motion of bars from t = 0 to `end` [s].
+    """The exact motion of bars from t = 0 to `end` [s], of at most `limit` switches; `work` bounds terms of series.
 
     Parameters
     ----------
-    problem
-        The bars, their joints, base and loads.
-    end
-        Last instant [s].
     digits
         Decimal digits of the first computation, at least 30. Twice as many are taken, up to `MOST_DIGITS`, until two
         computations agree on all switches to `PROMISED`; the last one is returned.
-    limit
-        Greatest number of switches.
-    work
-        Counts the terms of series, and bounds them; None: without a bound.
 
     Raises
     ------
     ValueError
         If `end` is not positive and finite or `digits` is below 30.
-    TooManySwitchesError
-        If there are more switches than `limit`.
-    LostDigitsError
-        If waves and switches amplify the rounding until computations differ in every number of digits.
-    TooMuchWorkError
-        If the motion takes more work than is allowed.
+    TooManySwitchesError, LostDigitsError, TooMuchWorkError
+        If the motion cannot be followed to its end, as `switches` has it.
 
     Examples
     --------
@@ -266,7 +233,6 @@ def _agree_until(motion: BarsMotion, finer: BarsMotion) -> float | None:
 
 
 def _solved(problem: BarsProblem, end: float, digits: int, limit: int, work: Work) -> BarsMotion:
-    """The motion in so many digits."""
     with precision(bits_of(digits)):
         nodes, up, down = nodes_of(problem, end, work)
         joints = [node for node in nodes if isinstance(node, Joint)]

@@ -17,17 +17,11 @@ from fem_reference.problem.checks import require, require_numbers
 
 @dataclass(frozen=True)
 class Bar:
-    """A homogeneous elastic bar of unit area.
-
-    Raises
-    ------
-    ValueError
-        For a value out of its range, naming field, rule and value.
-    """
+    """A homogeneous elastic bar of unit area."""
 
     length: float  # L [m]
-    density: float  # mass density rho [kg/m3]
-    modulus: float  # modulus E of the wave [Pa]
+    density: float  # rho [kg/m3]
+    modulus: float  # E of the wave [Pa]
     velocity: float = 0.0  # at t = 0, upwards [m/s]
 
     def __post_init__(self) -> None:
@@ -50,11 +44,6 @@ class BarJoint:
 
     A unilateral joint carries N = k max(0, -y) of the gap y between its faces; any other one T = -k (y - r), and its
     slip r grows where |T| would pass the strength.
-
-    Raises
-    ------
-    ValueError
-        For a value out of its range, naming field, rule and value.
     """
 
     law: Literal["unilateral", "frictional"]
@@ -74,10 +63,7 @@ BONDED = BarJoint("frictional")  # faces that always move alike
 def function_of(piece: Piece, start: arb, rates: Rates) -> ExponentialSum:
     """A piece of a drive as a function of the time since its start [s].
 
-    Raises
-    ------
-    ValueError
-        For a Ricker pulse, which is no sum of exponentials times polynomials.
+    A Ricker pulse, which is no sum of exponentials times polynomials, is a `ValueError`.
     """
     if isinstance(piece, Ricker):
         raise ValueError(f"drive: must be made of polynomials and sines, got {piece!r}")
@@ -99,13 +85,7 @@ def size_of(piece: Piece) -> float:
 
 @dataclass(frozen=True)
 class BarsProblem:
-    """Bars from the base upwards, unstrained at t = 0, when all loads come on.
-
-    Raises
-    ------
-    ValueError
-        For numbers that do not go together.
-    """
+    """Bars from the base upwards, unstrained at t = 0, when all loads come on."""
 
     bars: tuple[Bar, ...]
     joints: tuple[BarJoint | None, ...]  # at the foot of each bar; the first is None where nothing is below

@@ -1,16 +1,14 @@
 """The block of one strain with no-tension corners and friction, exact in time: from switch to switch.
 
-A corner is closed while it presses, N = -p w >= 0, and open while its gap w is positive; closed, it sticks, or slips
-at |T| = tan(phi) N + C. How it gets from switch to switch, and what is proven of each, is told in `march`.
+What a closed corner bears is told in `block_model`, how it gets from switch to switch, and what is proven of each, in
+`march`.
 
-A corner at zero gap goes the way of the first derivative of its gap that is not zero: a block that touches
-at rest when a pressure is switched on lifts off at once, since its base accelerates upwards. In the same way a corner
-that closes slips at once where p_s |s'| > tan(phi) p |w'|, unless it has cohesion. What opens with a shear force T
-releases the energy T^2 / (2 p_s) of its spring.
+By the settling of `march` a block that touches at rest when a pressure is switched on lifts off at once, since its base
+accelerates upwards, and a corner that closes slips at once where p_s |s'| > tan(phi) p |w'|, unless it has cohesion.
+What opens with a shear force T releases the energy T^2 / (2 p_s) of its spring.
 
-With dashpots, or with an impact law on rigid contact, the laws of `block_model` hold, and the same proof does: a
-dashpot changes the matrices and what is watched, an impact the rates. Impacts that accumulate are named in `cascades`,
-with the instant at which the contact comes to rest enclosed (`block_impacts`).
+A dashpot changes the matrices and what is watched, an impact on rigid contact the rates; the same proof holds. Impacts
+that accumulate are named in `cascades`, with the instant at which the contact comes to rest enclosed (`block_impacts`).
 """
 
 from __future__ import annotations
@@ -45,27 +43,27 @@ REPORT_DIGITS = 40  # decimal digits in which the motion is evaluated where it i
 
 @dataclass(frozen=True)
 class BlockHistory:
-    """The motion at given instants; forces act on the block."""
+    """The motion at given instants, arrays of shape (times,), of M and N of (2, times); forces act on the block."""
 
-    time: Array  # instants [s], shape (times,)
+    time: Array  # [s]
     displacement: Array  # (u, v, r, ex, ey, gxy) of the centroid [m, rad, -], shape (6, times)
     velocity: Array  # their rates [m/s, 1/s], shape (6, times)
-    gap: Array  # gap w at M and N [m], negative when pressed, shape (2, times)
-    gap_velocity: Array  # rate of the gap, which is the normal velocity of the base corner [m/s], shape (2, times)
-    normal_force: Array  # N at M and N [N], upwards, without impulses, shape (2, times)
-    shear_force: Array  # T of the closed corners [N], towards +x, shape (2, times)
-    slide: Array  # slide s at M and N over the base [m], shape (2, times)
-    slipped: Array  # movement of the shear reference r by slipping until then, at M and N [m], shape (2, times)
-    states: Array  # 0 open or released, 1 sticks, 2 slips towards +x, -2 slips towards -x, at M and N, shape (2, times)
-    closed: Array  # 1 where a corner is closed, else 0, shape (2, times)
-    contact_pressure: Array  # (N_M + N_N) / a [Pa], shape (times,)
-    kinetic: Array  # kinetic energy [J], shape (times,)
-    strain: Array  # strain energy [J], shape (times,)
-    springs: Array  # energy of the normal and shear springs, of released ones too [J], shape (times,)
-    load: Array  # potential energy of pressure, traction and weight, -F x, less the base's work [J], shape (times,)
-    released: Array  # energy of the shear springs lost by opening until then [J], shape (times,)
-    friction: Array  # energy lost by friction until then [J], shape (times,)
-    damped: Array  # energy lost in dashpots and by impacts until then [J], shape (times,)
+    gap: Array  # w [m], negative when pressed
+    gap_velocity: Array  # its rate, the normal velocity of the base corner [m/s]
+    normal_force: Array  # N [N], upwards, without impulses
+    shear_force: Array  # T of the closed corners [N], towards +x
+    slide: Array  # s over the base [m]
+    slipped: Array  # movement of the shear reference r by slipping until then [m]
+    states: Array  # 0 open or released, 1 sticks, 2 slips towards +x, -2 slips towards -x
+    closed: Array  # 1 where a corner is closed, else 0
+    contact_pressure: Array  # (N_M + N_N) / a [Pa]
+    kinetic: Array  # energy [J]
+    strain: Array  # energy [J]
+    springs: Array  # energy of the normal and shear springs, of released ones too [J]
+    load: Array  # potential energy of pressure, traction and weight, -F x, less the base's work [J]
+    released: Array  # energy of the shear springs lost by opening until then [J]
+    friction: Array  # energy lost until then [J]
+    damped: Array  # energy lost in dashpots and by impacts until then [J]
     displacement_radius: Array  # greatest distance of each displacement from the true one, shape (6, times)
 
     @property
@@ -81,21 +79,14 @@ class BlockMotion(ProvenMotion):
     problem: BlockProblem
     closed_at_start: tuple[bool, bool]  # whether M and N are closed just after t = 0
     model: BlockModel = field(repr=False, compare=False)
-    impacts: tuple[Impact, ...] = ()  # impacts on a rigid contact in the order of time, but for those of cascades
+    impacts: tuple[Impact, ...] = ()  # on a rigid contact in the order of time, but for those of cascades
     cascades: tuple[Cascade, ...] = ()  # infinitely many impacts that end in rest, in the order of time
 
     def at(self, times: ArrayLike) -> BlockHistory:
-        """The motion at instants in any order.
-
-        Raises
-        ------
-        ValueError
-            If an instant is not from 0 to `end`.
-        """
+        """The motion at instants from 0 to the end, in any order."""
         return BlockHistory(**self.columns(self.model, times, REPORT_DIGITS))
 
     def _at(self, instant: Instant) -> dict[str, Any]:
-        """All columns but the time at an instant."""
         problem = self.problem
         model = self.model
         node = instant.node
@@ -187,34 +178,20 @@ def base_motion(node: Node, time: arb) -> tuple[arb_mat, arb_mat]:
 
 
 def solve(problem: BlockProblem, end: float, digits: int = DIGITS, limit: int = 100_000) -> BlockMotion:
-    """The exact motion of a block from t = 0 to `end` [s].
+    """The exact motion of a block from t = 0 to `end` [s], of at most `limit` switches.
 
     Parameters
     ----------
-    problem
-        The block, its corners and its loads.
-    end
-        Last instant [s].
     digits
         Decimal digits of the computation, at least 30; more are taken, up to `MOST_DIGITS`, where the instants of
         the switches are not enclosed to `PROMISED`.
-    limit
-        Greatest number of switches.
 
     Raises
     ------
     ValueError
         If `end` is not positive and finite or `digits` is below 30.
-    TooManySwitchesError
-        If there are more switches than `limit`.
-    TooMuchWorkError
-        If the motion takes more steps than are allowed; the contact oscillates too fast for its length.
-    LostDigitsError
-        If switches amplify what the motion may be off until nothing can be decided.
-    AccumulationError
-        If impacts follow each other ever faster, and that they accumulate is not proven.
-    NoContactStateError
-        If no state of the corners agrees with the motion that follows from it.
+    TooManySwitchesError, TooMuchWorkError, LostDigitsError, AccumulationError, NoContactStateError
+        If the motion cannot be followed to its end, as `switches` has it.
     """
 
     def motion_in(digits: int) -> BlockMotion:

@@ -122,32 +122,14 @@ class Hops:
         return State(*self.series(state, length).state(time / arb(length)))
 
     def pushed(self, state: State, speeds: arb, spread: arb) -> State:
-        """The state after impacts.
-
-        Parameters
-        ----------
-        state
-            The state without them.
-        speeds
-            Sum of the speeds at which the gap closes [m/s].
-        spread
-            Time within which all of them are around the present instant [s].
-        """
+        """The state after impacts by the sum of their speeds [m/s], all within a time `spread` around now [s]."""
         angle = self.rate * spread
         late = self.spread(self.direction, angle * angle.exp() * self.direction_norm)
         push = (1 + self.e) * speeds
         return State(state.u + late.u * push, state.v + late.v * push)
 
     def find_hop(self, state: State, speed: arb) -> Hop | None:
-        """The flight that begins with an impact, None if it is not proven to be short and concave.
-
-        Parameters
-        ----------
-        state
-            The state right after the impact.
-        speed
-            Rate at which the gap opens [m/s], positive.
-        """
+        """The flight right after an impact, the gap opening at a speed [m/s]; None if not proven short and concave."""
         bend = self.contact.closing(self.accelerations(state))
         if not bend < 0:
             return None

@@ -1,8 +1,7 @@
 """The motion of a block from switch to switch, with the base below it and impacts on a rigid contact.
 
-An impact on a rigid contact changes the rates at an instant that is enclosed like that of a switch. Where impacts
-follow each other as short hops, each number is followed in its own ball until they are over or until infinitely many
-of them are proven to accumulate (`block_impacts`).
+The instant of an impact is enclosed like that of a switch. Where impacts follow each other as short hops, each number
+is followed in its own ball until they are over or proven to accumulate (`block_impacts`).
 """
 
 from __future__ import annotations
@@ -32,7 +31,7 @@ from fem_reference.events.switches import (
 from fem_reference.problem.motion import Motion
 from fem_reference.problem.problem import Array
 
-# Greatest number of steps of `ANGLE` radians; as many of a block at rest on p = 1e18 N/m took 18 s and 90 MB.
+# Most steps of `ANGLE` radians; as many of a block at rest on p = 1e18 N/m took 18 s and 90 MB.
 STEPS = 60_000
 IDLE = 500  # steps without a switch after which a motion that would take too many steps is given up
 TAIL_BITS = 0.3  # part of the working bits to which hops are followed before the rest of them is enclosed at once
@@ -67,7 +66,7 @@ class BlockMarch(March):
         return Start(ZERO, u, v, [reference, reference]), states
 
     def jump(self, rates: Sequence[arb]) -> arb_mat:
-        """Return what the block takes over, as seen from its base, of a jump of the base's rates."""
+        """What the block takes over, as seen from its base, of a jump of the base's rates."""
         return column([*rates, *[ZERO] * 4])
 
     def check_work(self) -> None:
@@ -88,7 +87,7 @@ class BlockMarch(March):
         if tuple(was) != self.states:
             self.last_switch = len(self.nodes)
 
-    # -- impacts
+    # ---- impacts ----
 
     def strike(self, touches: bool) -> arb_mat | None:
         """Let the rates jump where the gap of a rigid contact is zero and closes."""
@@ -118,7 +117,6 @@ class BlockMarch(March):
             self._follow_hops(contact)
 
     def _add_impact(self, contact: RigidContact, approach: arb) -> None:
-        """Record an impact at this instant."""
         self.impacts.append(Impact(self.now, float(approach), float(contact.impulse(approach))))
         self.last_switch = len(self.nodes)
 
@@ -193,14 +191,7 @@ class BlockMarch(March):
     def _rest_after(self, hops: Hops, rest: Accumulation, state: State, time: arb) -> None:
         """Take the state in which the impacts that are left accumulate, and let the contact rest.
 
-        Parameters
-        ----------
-        hops, rest
-            What they come to.
-        state
-            The state after the last impact that was followed, at the present midpoint of its instant.
-        time
-            That instant [s].
+        `state` is that after the last impact that was followed, at the midpoint of its instant, `time` [s].
         """
         error = self.transport.record()
         error[:12] += [float(rest.reach * x) * INFLATION for part in hops.units for x in part.entries()]

@@ -11,14 +11,14 @@ All motion is seen from the base, which is at (x, y) and moves evenly between th
 from where the corners touch: u and v stand for u - x and v - y + g0. The corners M = (0, 0) and N = (a, 0) have the
 normal gap w = v(X, -b/2), positive when open, and slide by s = u(X, -b/2).
 
-On the block act N = -p w upwards and T towards +x. A corner that sticks has T = -p_s (s - r); one that slips has
-T = sigma (tan(phi) N + C), with sigma against the direction of its sliding, and moves its reference, r = s + T / p_s.
+On the block act N = -p w >= 0 upwards and T towards +x while a corner is closed. One that sticks has T = -p_s (s - r);
+one that slips has T = sigma (tan(phi) N + C), with sigma against the direction of its sliding, and moves its reference,
+r = s + T / p_s.
 
 **Dashpots.** A corner with a dashpot c beside its spring presses with N = max(0, -(p w + c w')) while w < 0, and with
-nothing above. So the force jumps to -c w' as the gap closes, and it reaches zero on the way back while w is still
-negative: the spring has not come back, and from there on the corner is *released*. A released corner carries nothing.
-It presses again if p w + c w' falls to zero, which is at the rate w' = -p w / c > 0 and not at w' = 0, and it
-is open once its gap is positive.
+nothing above. So the force jumps to -c w' as the gap closes, and reaches zero on the way back while w is still
+negative: from there on the corner is *released*, and carries nothing. It presses again if p w + c w' falls to zero, at
+the rate w' = -p w / c > 0, and is open once its gap is positive.
 
 **Rigid contact** (p infinite) has an impact law: a gap of both corners that closes at the rate w' < 0 has the rate
 -e w' right after. The impulse of both corners together is::
@@ -57,36 +57,29 @@ Vector = list[arb]
 class BlockProblem:
     """A block of one strain that is dropped on or pressed against two no-tension corner springs.
 
-    At t = 0 the block is unstrained, its base a gap above the springs, and all loads are switched on.
-    A closed corner carries the normal force N = -p w >= 0 and the shear force T = -p_s (s - r), where the
-    reference r is the slide at which it closed; an open corner carries nothing. With friction |T| is at most
-    tan(phi) N + C, where C is half of cohesion times width, and a corner at this limit moves its reference. Cohesion
-    is lost while a corner is open, and acts again once it has closed.
-
-    Raises
-    ------
-    ValueError
-        For a value out of its range, naming field, rule and value.
+    At t = 0 the block is unstrained, its base a gap above the springs, and all loads are switched on. The reference r
+    of a corner is the slide at which it closed. C is half of cohesion times width; it is lost while a corner is open,
+    and acts again once it has closed.
     """
 
-    width: float  # width a of the block [m], unit thickness
-    height: float  # height b [m]
-    density: float  # mass density rho [kg/m3]
-    young: float  # Young's modulus E [Pa]; `math.inf`: a rigid block
-    stiffness: float  # normal stiffness p of one corner [N/m]; `math.inf`: rigid contact, which needs `restitution`
-    pressure: float = 0.0  # pressure q on the top edge [Pa], downwards, from t = 0 on
-    shear_stiffness: float = 0.0  # shear stiffness p_s of a closed corner [N/m]; 0: frictionless, else glued in shear
-    poisson: float = 0.0  # Poisson's ratio mu [-]
+    width: float  # a [m], unit thickness
+    height: float  # b [m]
+    density: float  # rho [kg/m3]
+    young: float  # E [Pa]; `math.inf`: a rigid block
+    stiffness: float  # p of one corner [N/m]; `math.inf`: rigid contact, which needs `restitution`
+    pressure: float = 0.0  # q on the top edge [Pa], downwards, from t = 0 on
+    shear_stiffness: float = 0.0  # p_s of a closed corner [N/m]; 0: frictionless, else glued in shear
+    poisson: float = 0.0  # mu [-]
     hypothesis: str = "plane stress"  # ``"plane stress"`` or ``"plane strain"``
     eccentricity: float = 0.0  # shift e towards +x of the middle of the pressed part of the top, a - 2 |e| long [m]
-    traction: float = 0.0  # traction towards +x on the whole top edge [Pa]
-    gravity: float = 0.0  # acceleration of gravity, downwards [m/s2]
-    gap: float = 0.0  # gap g0 under both corners at t = 0 [m]
-    velocity: float = 0.0  # velocity of the block at t = 0 [m/s], upwards positive: an impact has a negative one
+    traction: float = 0.0  # towards +x on the whole top edge [Pa]
+    gravity: float = 0.0  # downwards [m/s2]
+    gap: float = 0.0  # g0 under both corners at t = 0 [m]
+    velocity: float = 0.0  # at t = 0 [m/s], upwards positive
     slope: float = 0.0  # angle by which gravity is turned towards +x, as on an incline [deg]
-    friction: float | None = None  # angle phi of friction [deg]; None: a closed corner never slips
+    friction: float | None = None  # angle phi [deg]; None: a closed corner never slips
     cohesion: float = 0.0  # shear strength without normal force over the whole base [Pa]
-    base: Motion | None = None  # motion of the base; None: at rest
+    base: Motion | None = None  # None: at rest
     locked: bool = False  # whether the springs of the corners also pull and nothing opens or slips
     damping: float = 0.0  # dashpot c beside the normal spring of one corner, which never pulls [N s/m]
     restitution: float | None = None  # e of the impact law of rigid contact [-], from 0, plastic, to 1, elastic
@@ -199,14 +192,14 @@ class BlockModel(System):
         ]
 
     def watches(self, states: States, references: Sequence[arb]) -> Iterable[Watch]:
-        """Yield the functions that are positive as long as the corners keep their states."""
+        """As of `System`; both corners of a rigid contact have one function."""
         if self.contact is None:
             return () if self.locked else super().watches(states, references)
         row, becomes, order = (0, STICKS, 0) if states[0] == OPEN else (4, OPEN, 2)
         return [Watch(0, NORMAL, (Part(row, arb(1)),), becomes, order=order)]
 
     def changed(self, states: States, watch: Watch) -> States:
-        """Return the states after a fall of a function; both corners of a rigid contact are one."""
+        """As of `System`; both corners of a rigid contact are one."""
         return super().changed(states, watch) if self.contact is None else (watch.becomes,) * 2
 
     def energy(self, states: States, start: Start) -> arb:
@@ -230,8 +223,7 @@ class BlockModel(System):
 class RigidContact:
     """The contact of both corners with a rigid base, and its impact law.
 
-    With n the row of the gap of both corners and W the mobility: an impulse J on both corners changes x' by W n' J, and
-    the gap's rate by C J.
+    An impulse J on both corners changes x' by W n' J, W the mobility, and their gap's rate by C J.
     """
 
     def __init__(self, model: BlockModel, row: arb_mat, restitution: arb) -> None:

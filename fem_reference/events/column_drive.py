@@ -57,11 +57,11 @@ class Polynomial:
     origin: float = 0.0  # [s]
 
     def longest_step(self) -> float:
-        """Return the longest step; nothing bounds it [s]."""
+        """The longest step [s]; nothing bounds it."""
         return math.inf
 
     def term_count(self, length: float) -> int:
-        """Return how many terms leave nothing that the digits of the context would show."""
+        """How many terms leave nothing that the digits of the context would show."""
         return len(self.coefficients)
 
     def series(self, start: arb, length: float, count: int) -> list[arb]:
@@ -75,7 +75,7 @@ class Polynomial:
         return ZERO if len(self.coefficients) <= count else arb("inf")
 
     def antiderivative(self, start: arb, value: arb) -> Polynomial:
-        """Return the integral that has a value at an instant."""
+        """The integral that has a value at an instant."""
         powers = [ZERO, *(arb(c) / (k + 1) for k, c in enumerate(self.coefficients))]
         powers[0] = value - arb_poly(powers)(start - arb(self.origin))
         return Polynomial(tuple(powers), self.origin)
@@ -92,28 +92,28 @@ class Sine:
     origin: float = 0.0  # [s]
 
     def longest_step(self) -> float:
-        """Return the longest step, of `ANGLE` radians [s]."""
+        """The longest step, of `ANGLE` radians [s]."""
         return ANGLE / float(self.rate.upper())
 
     def term_count(self, length: float) -> int:
-        """Return how many terms leave nothing that the digits of the context would show."""
+        """As of `Polynomial`."""
         return term_count(float(self.rate.upper()) * length)
 
     def series(self, start: arb, length: float, count: int) -> list[arb]:
-        """Coefficients of the first powers of (t - start) / length."""
+        """As of `Polynomial`."""
         phase = self.rate * (start - arb(self.origin)) + arb.pi() * self.quarters / 2
         with capped(count):
             sine = arb_series([phase, self.rate * arb(length)], prec=count).sin()
             return [sine[k] * self.amplitude + (0 if k else self.offset) for k in range(count)]
 
     def tail(self, start: arb, length: float, count: int) -> arb:
-        """Bound of the terms from `count` on times the cube of their number."""
+        """As of `Polynomial`."""
         step = self.rate * arb(length)
         first = abs(self.amplitude) * step**count / arb(count).fac()
         return tail_sum(step / (count + 1)) * arb(count) ** 3 * first
 
     def antiderivative(self, start: arb, value: arb) -> Sine:
-        """Return the integral that has a value at an instant, of a sine without an offset."""
+        """The same of a sine without an offset."""
         turned = Sine(self.amplitude / self.rate, self.rate, ZERO, (self.quarters - 1) % 4, self.origin)
         return replace(turned, offset=value - turned.series(start, 1.0, 1)[0])
 
@@ -127,17 +127,17 @@ class Ricker:
     integral: bool = False
 
     def longest_step(self) -> float:
-        """Return the longest step, of `RICKER_ANGLE` [s]."""
+        """The longest step, of `RICKER_ANGLE` [s]."""
         return RICKER_ANGLE / (math.pi * self.pulse_frequency) * (1 - 1e-12)
 
     def term_count(self, length: float) -> int:
-        """Return how many terms leave nothing that the digits of the context would show."""
+        """As of `Polynomial`."""
         angle = math.pi * self.pulse_frequency * length
         rounded = 2.0 ** (math.ceil(2 * math.log2(max(angle, 1e-200))) / 2)  # few angles, whose counts are kept
         return _ricker_term_count(rounded, ctx.prec)
 
     def series(self, start: arb, length: float, count: int) -> list[arb]:
-        """Coefficients of the first powers of (t - start) / length."""
+        """As of `Polynomial`."""
         f = arb(self.pulse_frequency)
         late = start - 2 / f
         with capped(count):
@@ -148,7 +148,7 @@ class Ricker:
             return [pulse[k] for k in range(count)]
 
     def tail(self, start: arb, length: float, count: int) -> arb:
-        """Bound of the terms from `count` on times the cube of their number, by Cauchy's estimate on a disc."""
+        """As of `Polynomial`, by Cauchy's estimate on a disc."""
         f = arb(self.pulse_frequency)
         w = arb.pi() * f
         # e^(-b^2) is at most e^(y^2) where |Im b| <= y; y^2 = count / 2 makes the estimate least
@@ -160,7 +160,7 @@ class Ricker:
         return tail_sum(1 / radius) * arb(count) ** 3 * first
 
     def antiderivative(self, start: arb, value: arb) -> Ricker:
-        """Return the integral that is zero long before the pulse; at t = 0 it is e^(-4 pi^2) of its greatest values."""
+        """The integral that is zero long before the pulse; at t = 0 it is e^(-4 pi^2) of its greatest values."""
         return replace(self, integral=True)
 
 
@@ -185,16 +185,16 @@ class Course:
     pieces: tuple[Piece, ...]
 
     def piece_at(self, time: float) -> Piece:
-        """Return the piece from an instant on."""
+        """The piece from an instant on."""
         return self.pieces[bisect_right(self.breaks, time)]
 
     def parts(self) -> list[tuple[float, Piece]]:
-        """Return the pieces from t = 0 on, each with its beginning [s]."""
+        """The pieces from t = 0 on, each with its beginning [s]."""
         first = bisect_right(self.breaks, 0.0)
         return list(zip((0.0, *self.breaks[first:]), self.pieces[first:], strict=True))
 
     def integral(self) -> Course:
-        """Return the integral that is zero where the first piece begins."""
+        """The integral that is zero where the first piece begins."""
         value = ZERO
         start = ZERO
         pieces = []
@@ -247,7 +247,7 @@ def triangle(size: float, duration: float) -> Drive:
 
 
 def ricker(size: float, frequency: float) -> Drive:
-    """Return a Ricker pulse about 2/f."""
+    """A Ricker pulse about 2/f."""
     return lambda: Course((), (Ricker(size, frequency),))
 
 

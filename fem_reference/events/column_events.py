@@ -2,9 +2,8 @@
 
 How it gets from switch to switch, and what is proven of each, is told in `march`.
 
-A joint at zero gap, or a shear force at its strength, goes the way of the first derivative that is not zero: in a
-stack that touches at rest when its weight is switched on, joint j closes in the derivative 2 j + 2. Joints whose gap
-is zero in all derivatives, as those of blocks in common flight, carry no force; they are in `resting`.
+By its settling joint j of a stack that touches at rest when its weight is switched on closes in the derivative 2 j + 2.
+Joints whose gap is zero in all derivatives, as those of blocks in common flight, carry no force; they are in `resting`.
 """
 
 from __future__ import annotations
@@ -37,7 +36,7 @@ REPORT_DIGITS = 28  # decimal digits in which the series are summed where the mo
 class ColumnHistory:
     """The motion at given instants; arrays over blocks or joints from the base upwards, and over the instants."""
 
-    time: Array  # instants [s], shape (times,)
+    time: Array  # [s], shape (times,)
     foot: Array  # displacement of the foot of each block [m], shape (blocks, times)
     top: Array  # of its top [m]
     foot_velocity: Array  # [m/s]
@@ -47,11 +46,11 @@ class ColumnHistory:
     slip: Array  # r of each joint [m]
     states: Array  # of each joint: 0 open, 1 closed or sticks, 2 and -2 slips towards + and -
     face_force: Array  # force of what is below each block on it, then that on the top [Pa], shape (blocks + 1, times)
-    kinetic: Array  # kinetic energy [J/m2], shape (times,)
-    strain: Array  # strain energy of the blocks [J/m2]
+    kinetic: Array  # energy [J/m2], shape (times,)
+    strain: Array  # energy of the blocks [J/m2]
     springs: Array  # energy of the joints [J/m2]
-    potential: Array  # potential energy of the weight [J/m2]
-    friction: Array  # energy lost by friction until then [J/m2]
+    potential: Array  # energy of the weight [J/m2]
+    friction: Array  # energy lost until then [J/m2]
     displacement_radius: Array  # greatest distance of a displacement from the true one [m], shape (times,)
 
     @property
@@ -90,13 +89,7 @@ class ColumnMotion(ProvenMotion):
     model: ColumnModel = field(repr=False, compare=False)
 
     def at(self, times: ArrayLike) -> ColumnHistory:
-        """The motion at instants in any order.
-
-        Raises
-        ------
-        ValueError
-            If an instant is not from 0 to `end`.
-        """
+        """The motion at instants from 0 to the end, in any order."""
         problem = self.problem
         motion = self.columns(self.model, times, REPORT_DIGITS)
         u = motion["displacement"]
@@ -147,7 +140,7 @@ class ColumnMotion(ProvenMotion):
         return ways
 
     def _at(self, instant: Instant) -> dict[str, Any]:
-        """Return what `at` reads of an instant; the last of the faces is where `BASE` points to."""
+        """What `at` reads of an instant; the last of the faces is where `BASE` points to."""
         model = self.model
         start = instant.start
         states = instant.node.states
@@ -199,14 +192,14 @@ class ColumnMarch(March):
         return start, (OPEN if column.unilateral else STICKS,) * count
 
     def jump(self, rates: Sequence[arb]) -> arb_mat:
-        """Return what a base that the lowest block is welded to passes on of a jump."""
+        """What a base that the lowest block is welded to passes on of a jump."""
         impulse = arb_mat(self.column.size, 1)
         impulse[0, 0] = self.column.base_coupling * rates[0]
         return self.column.mobility * impulse
 
 
 def least_terms(problem: ColumnProblem, end: float) -> tuple[float, float]:
-    """Return how many terms of series a motion takes with its contacts open throughout, and closed throughout.
+    """How many terms of series a motion takes with its contacts open throughout, and closed throughout.
 
     Those of switches, and of computations in more digits, come on top.
     """
@@ -221,34 +214,9 @@ def least_terms(problem: ColumnProblem, end: float) -> tuple[float, float]:
 def solve(
     problem: ColumnProblem, end: float, digits: int = DIGITS, limit: int = 100_000, work: Work | None = None
 ) -> ColumnMotion:
-    """The exact motion of a column from t = 0 to `end` [s].
+    """The exact motion of a column from t = 0 to `end` [s]; `work` bounds terms of series.
 
-    Parameters
-    ----------
-    problem
-        The column and its drives.
-    end
-        Last instant [s].
-    digits
-        Decimal digits of the first computation, at least 30; more are taken, up to `MOST_DIGITS`, where the instants of
-        the switches are not enclosed to `PROMISED`.
-    limit
-        Greatest number of switches.
-    work
-        Counts the terms of series, and bounds them; None: without a bound.
-
-    Raises
-    ------
-    ValueError
-        If `end` is not positive and finite or `digits` is below 30.
-    TooManySwitchesError
-        If there are more switches than `limit`.
-    TooMuchWorkError
-        If the motion takes more work than is allowed.
-    LostDigitsError
-        If switches amplify what the motion may be off until nothing can be decided.
-    NoContactStateError
-        If no state of the joints agrees with the motion that follows from it.
+    All else is as in `block_events.solve`, but for the `AccumulationError` of impacts.
     """
     counted = work or Work()
 

@@ -32,13 +32,7 @@ BASE = -1  # in place of an unknown: the face moves as the base does
 
 @dataclass(frozen=True)
 class ColumnBlock:
-    """A block of a column, per unit of area.
-
-    Raises
-    ------
-    ValueError
-        For a value out of its range, naming field, rule and value.
-    """
+    """A block of a column, per unit of area."""
 
     height: float  # h [m]
     density: float  # rho [kg/m3]
@@ -51,13 +45,7 @@ class ColumnBlock:
 
 @dataclass(frozen=True)
 class ColumnJoint:
-    """A spring at the foot of a block, per unit of area.
-
-    Raises
-    ------
-    ValueError
-        For a value out of its range, naming field, rule and value.
-    """
+    """A spring at the foot of a block, per unit of area."""
 
     stiffness: float  # k [Pa/m]
     gap: float = 0.0  # of a unilateral joint at t = 0 [m]
@@ -73,11 +61,6 @@ class ColumnProblem:
 
     At t = 0 all blocks are unstrained and at zero displacement, or at rest under their weight. Welded faces, also one
     on the base, get one velocity at once, by impulses on them.
-
-    Raises
-    ------
-    ValueError
-        For a value out of its range, naming field, rule and value.
     """
 
     blocks: tuple[ColumnBlock, ...]  # from the base upwards

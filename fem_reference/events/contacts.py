@@ -80,7 +80,7 @@ class Laws(NamedTuple):
 
 
 def laws(contacts: Sequence[Contact], states: Sequence[int], count: int) -> Laws:
-    """Return the forces along so many rows."""
+    """The forces along so many rows."""
     of = Laws(arb_mat(count, count), arb_mat(count, count), arb_mat(count, len(contacts)), arb_mat(count, 1))
     for c, (contact, state) in enumerate(zip(contacts, states, strict=True)):
         if state in CARRIES_NOTHING:

@@ -195,7 +195,7 @@ class Ellipsoid:
         self.transport(M, size, box)
 
     def _rates(self, start: Start, states: States, drives: Sequence[Piece]) -> tuple[Array, Array]:
-        """Z' at a state, and the size of what its drives add to z''."""
+        """The z' at a state, and the size of what its drives add to z''."""
         a, third = floats(self.model.accelerations(states, start, drives)).T
         still = np.zeros(len(states))
         further = np.abs(self.unit) @ np.abs(np.array([*0 * third, *third, *still]))

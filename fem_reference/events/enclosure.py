@@ -42,13 +42,7 @@ def bits_of(digits: float) -> int:
 
 
 def check_request(end: float, digits: int) -> None:
-    """Raise for a last instant or a number of digits that no motion is computed for.
-
-    Raises
-    ------
-    ValueError
-        If `end` is not positive and finite, or `digits` is below `LEAST_DIGITS`.
-    """
+    """Raise a `ValueError` if `end` is not positive and finite, or `digits` is below `LEAST_DIGITS`."""
     if not (math.isfinite(end) and end > 0):
         raise ValueError(f"end: must be positive and finite, got {end!r}")
     if digits < LEAST_DIGITS:
@@ -102,20 +96,10 @@ class Fall(NamedTuple):
 def polynomial(
     coefficients: list[arb], end: arb, begin: arb = ZERO, tail: arb = ZERO, most: float = math.inf
 ) -> Smooth:
-    """A polynomial with balls for coefficients as a function of the distance from `begin`.
+    """A polynomial, given by the balls of its coefficients, as a function of the distance of its argument from `begin`.
 
-    Parameters
-    ----------
-    coefficients
-        Of its powers.
-    end
-        Greatest argument of the polynomial.
-    begin
-        Argument at which the distance is zero.
-    tail
-        What is left out of it, and of its first two derivatives.
-    most
-        Evaluations, after which a `RuntimeError` ends the search.
+    `end` is the greatest argument, `tail` what is left out of the polynomial and of its first two derivatives. After
+    `most` evaluations a `RuntimeError` ends the search.
     """
     value = arb_poly(coefficients)
     slope = value.derivative()
@@ -135,19 +119,10 @@ def polynomial(
 
 
 def first_fall(function: Smooth, end: arb, touches: list[arb] | None = None, floor: arb | None = None) -> Fall | None:
-    """The first point in (0, end] at which a function falls through zero, None if it does not.
+    """The first point in (0, end] at which a function, positive just after zero, falls through zero; None if none.
 
-    Parameters
-    ----------
-    function
-        Positive just after zero.
-    end
-        End of the search.
-    touches
-        Takes the points at which the function comes so near to zero, over intervals of half the digits, that a
-        crossing can be neither proven nor excluded; they count as none.
-    floor
-        Size below which the function counts as zero, and as no crossing.
+    `touches` takes the points at which the function comes so near to zero, over intervals of half the digits, that a
+    crossing can be neither proven nor excluded; they count as none, as does what is below `floor`.
     """
     finest = end * arb(2) ** (-ctx.prec // 2)
     pending = [(ZERO, end)]

@@ -109,7 +109,6 @@ class ExponentialSum:
         return self + ExponentialSum.polynomial(self.rates, [*coefficients])
 
     def __bool__(self) -> bool:
-        """Whether any term is left."""
         return any(Q.length() for Q in self.terms.values())
 
     def __call__(self, s: arb) -> arb:
@@ -211,13 +210,7 @@ class ExponentialSum:
         return None
 
     def count_terms(self) -> None:
-        """Count the products of which the power series is made.
-
-        Raises
-        ------
-        TooMuchWorkError
-            If the motion takes more than it is allowed.
-        """
+        """Count the products of which the power series is made, as work."""
         self.rates.work.add(ORDER * sum(Q.length() for Q in self.terms.values()))
 
     def series(self) -> list[arb]:

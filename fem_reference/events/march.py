@@ -1,15 +1,13 @@
 """The motion from switch to switch, of a block or a column: steps, settling and recording.
 
-The centre of the motion is computed in so many digits without radii. How far it may be off is a set that is carried
-along (`ellipsoid`).
+The centre of the motion is computed without radii; how far it may be off is a set that is carried along (`ellipsoid`).
 
 **Switches.** Between two of them the motion is linear, and its Taylor series is summed in balls (`series`). The next
 switch is the first instant at which a gap or a normal force falls through zero, the shear force of a contact that
-sticks reaches its limit, or the reference of one that slips comes to rest (`contacts`). That it is the first is proven:
-up to it Bernstein's form of each of these functions, or Taylor's formula with a bound on the third derivative, is
-positive (`watching`), and the interval Newton operator proves that one root lies in the ball of its instant. What
-switches in one ball switches together. Where a function comes so near to zero that a crossing is neither proven nor
-excluded, its instant is in `touches`.
+sticks reaches its limit, or the reference of one that slips comes to rest (`contacts`). That it is the first is proven
+(`watching`), and that one root lies in the ball of its instant (`enclosure`). What switches in one ball switches
+together. Where a function comes so near to zero that a crossing is neither proven nor excluded, its instant is in
+`touches`.
 
 **Settling.** At an instant some watched functions are zero, and go the way of their first derivative that is not. What
 the state of a contact changes in the motion begins two derivatives above that in which its own function moves. So the
@@ -74,7 +72,7 @@ class March:
         self.resting: set[int] = set()  # contacts found at zero without force in all derivatives
         self.misses = 0  # times in succession that a fall was looked for in vain
 
-    # -- what a block or a column says of itself
+    # ---- what a block or a column says of itself ----
 
     def initial(self) -> tuple[Start, States]:
         """Where the motion begins, and the states of contacts whose functions rest there."""
@@ -94,7 +92,7 @@ class March:
     def follow_impact(self) -> None:
         """Go on from an impact."""
 
-    # -- the march
+    # ---- the march ----
 
     @property
     def now(self) -> float:
@@ -102,13 +100,7 @@ class March:
         return float(self.start.time)
 
     def run(self) -> None:
-        """Find the motion.
-
-        Raises
-        ------
-        HorizonError, NoContactStateError
-            If it cannot go on.
-        """
+        """Find the motion; raises a `HorizonError` or `NoContactStateError` where it cannot go on."""
         self.take_drives(0.0)
         start, self.states = self.initial()
         self.start = start
@@ -246,22 +238,17 @@ class March:
         self.start = self.start._replace(references=references)
         return radii
 
-    # -- settling
+    # ---- settling ----
 
     def settle(self, zeros: Mapping[tuple[int, int], int], recording: bool = True) -> None:
-        """Let the contacts take the states that agree with the motion from now on.
+        """Let the contacts take the states that agree with the motion from now on, or raise `NoContactStateError`.
+
+        The changes are switches if `recording`, which they are not at t = 0.
 
         Parameters
         ----------
         zeros
             Of contact and side of a watched function how many derivatives of displacements are zero in it.
-        recording
-            Whether changes are switches; they are not at t = 0.
-
-        Raises
-        ------
-        NoContactStateError
-            If no states agree.
         """
         model = self.model
         was = self.states
@@ -300,7 +287,7 @@ class March:
             self.record(was)
 
     def _lead(self, watch: Watch, segment: Segment, known: Mapping[tuple[int, int], int]) -> tuple[int | None, int]:
-        """Return the number of the first term of a function that is not zero, and its sign; None: all are."""
+        """The number of the first term of a function that is not zero, and its sign; None: all are."""
         terms = segment.function(watch)
         reaches = self.transport.reach(watch, self.states, segment, self.offset).terms()
         zeros = known.get((watch.contact, watch.side), 0) - watch.order

@@ -68,13 +68,7 @@ class ProvenMotion:
         raise NotImplementedError
 
     def columns(self, model: System, times: ArrayLike, digits: int) -> dict[str, Array]:
-        """All columns at instants in any order, summed in so many digits, the last axis being that of the instants.
-
-        Raises
-        ------
-        ValueError
-            If an instant is not from 0 to `end`.
-        """
+        """All columns at instants from 0 to `end`, in any order, summed in so many digits; the last axis is theirs."""
         t = instants(times, self.end)
         beginnings = [float(node.start.time) for node in self.nodes]
         last = -1
@@ -104,23 +98,9 @@ Motion = TypeVar("Motion", bound=ProvenMotion)
 
 
 def with_enough_digits(motion_in: Callable[[int], Motion], end: float, digits: int) -> Motion:
-    """The motion in as many digits as it needs.
+    """The motion to an `end` [s], first in `digits`, then in as many as it needs, up to `MOST_DIGITS`.
 
-    Parameters
-    ----------
-    motion_in
-        From decimal digits to the motion in them, which are those of the context.
-    end
-        Last instant of the motion [s].
-    digits
-        The digits of the first computation; more are taken time after time, up to `MOST_DIGITS`.
-
-    Raises
-    ------
-    ValueError
-        If `end` is not positive and finite, or the digits are too few.
-    LostDigitsError
-        If the most digits do not do.
+    `motion_in` is called in the precision of the digits that it gets. Raises `LostDigitsError` if the most do not do.
     """
     check_request(end, digits)
     promised = PROMISED * end

@@ -30,13 +30,7 @@ REST = 1e-18  # speed and acceleration below which the mass has come to rest, ov
 
 @dataclass(frozen=True)
 class ContactScheme:
-    """Parameters of the scheme.
-
-    Raises
-    ------
-    ValueError
-        For a value out of its range, naming field, rule and value.
-    """
+    """Parameters of the scheme."""
 
     alpha: float  # weight of the new acceleration in the displacement [-], positive
     delta: float  # weight of the new acceleration in the velocity [-]; above alpha + 1/2 contact could end downwards
@@ -67,8 +61,8 @@ class Branch(NamedTuple):
 
     low: float  # least theta [-]
     high: float  # greatest theta [-]
-    constant: float  # the line's value at theta = 0 [-]
-    slope: float  # its slope [-]
+    constant: float  # [-]
+    slope: float  # [-]
 
     def __call__(self, theta: float) -> float:
         """Restitution."""
@@ -78,10 +72,10 @@ class Branch(NamedTuple):
 class Statistics(NamedTuple):
     """Restitution over theta uniform from 0 to gg."""
 
-    mean: float  # mean of e [-]
-    low: float  # least e [-]
-    high: float  # greatest e [-]
-    mean_square: float  # mean of e^2, the share of the energy that is left [-]
+    mean: float  # of e [-]
+    low: float  # least [-]
+    high: float  # greatest [-]
+    mean_square: float  # of e^2, the share of the energy that is left [-]
 
 
 def restitution(scheme: ContactScheme, omega: float, theta: float) -> float:
@@ -89,8 +83,6 @@ def restitution(scheme: ContactScheme, omega: float, theta: float) -> float:
 
     Parameters
     ----------
-    scheme
-        The scheme.
     omega
         Omega = sqrt(k / m) dt, `math.inf` for a rigid contact.
     theta
@@ -110,11 +102,6 @@ def branches(scheme: ContactScheme, omega: float) -> tuple[Branch, ...]:
 
     The state is a straight line in theta as long as contact lasts; where the predictor changes its sign within
     an interval of theta, the interval is cut.
-
-    Raises
-    ------
-    ValueError
-        If `omega` is not positive.
     """
     step = scheme.step(omega)
     last = np.array([0.0, scheme.gg, 1 - scheme.delta])  # the velocity after a first step without contact
@@ -139,13 +126,7 @@ def branches(scheme: ContactScheme, omega: float) -> tuple[Branch, ...]:
 
 
 def statistics(scheme: ContactScheme, omega: float) -> Statistics:
-    """Mean, range and mean square of the restitution, each line integrated exactly.
-
-    Raises
-    ------
-    ValueError
-        If `omega` is not positive.
-    """
+    """Mean, range and mean square of the restitution, each line integrated exactly."""
     lines = branches(scheme, omega)
     ends = [((line.high - line.low) / scheme.gg, line(line.low), line(line.high)) for line in lines]
     values = [e for _, first, last in ends for e in (first, last)]

@@ -124,16 +124,13 @@ class System:
         return self.rates[states]
 
     def rate(self, states: States) -> float:
-        """Bound of the rates of the motion while the contacts keep their states [rad/s]."""
+        """The bound of the motion [rad/s]."""
         return self.bounds_of(states).motion
 
     def growth(self, states: States, radii: Array, passed: float) -> Array:
         """How far the unknowns may be off after a time [s] in which the contacts keep their states.
 
-        Parameters
-        ----------
-        radii
-            What unknowns, rates and references may be off before.
+        `radii` are those of unknowns, rates and references before.
         """
         n = self.size
         bounds = self.bounds_of(states)
@@ -292,23 +289,16 @@ def diagonal(entries: Sequence[arb]) -> arb_mat:
 
 
 def step_length(system: System, states: States, drives: Sequence[Piece]) -> float:
-    """Return the longest step; infinite where nothing bounds it [s]."""
+    """The longest step; infinite where nothing bounds it [s]."""
     return min([system.angle / system.rate(states), *(piece.longest_step() for piece in drives)])
 
 
 def expand(
     system: System, states: States, start: Start, drives: Sequence[Piece], length: float, count: int | None = None
 ) -> Segment:
-    """Return the series of a step.
+    """The series of a step of a length [s].
 
-    Parameters
-    ----------
-    system, states, start, drives
-        What moves, the states of its contacts, where it is and what drives it.
-    length
-        Of the step [s].
-    count
-        Terms, two at least; None: as many as the digits need, with a tail that bounds those that follow.
+    It has `count` terms, two at least; None: as many as the digits need, and a tail that bounds those that follow.
     """
     full = count is None
     angle = 0.0

@@ -76,13 +76,7 @@ class Work:
             self.report(time)
 
     def add(self, terms: float) -> None:
-        """Count further terms.
-
-        Raises
-        ------
-        TooMuchWorkError
-            If they are more than the limit in all.
-        """
+        """Count further terms; raises `TooMuchWorkError` if they are more than the limit in all."""
         self.terms += terms
         most = self.limit * self.part
         if self.terms > most:

@@ -72,14 +72,7 @@ class Watched(NamedTuple):
     reach: Callable[[Watch, bool], Reach]  # what terms of a function may be off by, also where its start is a switch
 
     def clear(self) -> tuple[float, float, list[Watch]]:
-        """Where floats prove all functions to be positive.
-
-        Returns
-        -------
-        share, width, doubtful
-            The part of the step throughout which they are; the length of the next part, in which that cannot be proven,
-            0 where there is none; and the functions that may fall in or after it.
-        """
+        """Where floats prove all functions to be positive: share, width and the doubtful ones, as of `first_doubt`."""
         watches = [watch for watch in self.watches if watch.lead is not None]
         if not watches:
             return 1.0, 0.0, []
@@ -98,12 +91,9 @@ class Watched(NamedTuple):
     def first_fall(
         self, low: float, high: arb, watches: Sequence[Watch], touches: list[arb]
     ) -> tuple[Fall, Watch] | None:
-        """Return the first fall of some functions between two shares of the step, and which function falls.
+        """The first fall of some functions between two shares of the step, and which function falls.
 
-        Raises
-        ------
-        LostDigitsError
-            If what the motion may be off hides a function, or it stays too near to zero for too long.
+        Raises `LostDigitsError` if what the motion may be off hides one, or it stays too near to zero for too long.
         """
         first = None
         begin = arb(low)
@@ -128,7 +118,7 @@ class Watched(NamedTuple):
         return first
 
     def root_near(self, watch: Watch, share: arb) -> arb:
-        """Return the root of the series itself next to the fall of a function, by Newton's method."""
+        """The root of the series itself next to the fall of a function, by Newton's method."""
         value = arb_poly([c.mid() for c in self.segment.function(watch)])
         slope = value.derivative()
         x = share.mid()
@@ -140,18 +130,9 @@ class Watched(NamedTuple):
 def first_doubt(terms: Array, margin: Array) -> tuple[float, float, list[int]]:
     """Where Bernstein's forms prove polynomials on [0, 1] to be positive.
 
-    Parameters
-    ----------
-    terms
-        Coefficients of their powers, shape (functions, `FLOAT_TERMS`).
-    margin
-        What each may be wrong by, shape (functions,).
-
-    Returns
-    -------
-    share, width, doubtful
-        The end of the part throughout which all are positive; the length of the next part, in which that cannot be
-        proven, 0 where there is none; and the numbers of the functions that may fall in or after it.
+    `terms` are coefficients of their powers, shape (functions, `FLOAT_TERMS`), `margin` what each may be wrong by.
+    Returns the end of the part throughout which all are positive; the length of the next part, in which that cannot be
+    proven, 0 where there is none; and the numbers of the functions that may fall in or after it.
     """
     forms = (terms @ bernstein(FIRST_CELLS)).min(axis=1)
     doubtful = np.flatnonzero(~(forms > margin))

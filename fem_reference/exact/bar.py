@@ -43,25 +43,13 @@ TARGET = 1e-11
 
 @dataclass(frozen=True)
 class Bar(BarProblem):
-    """An elastic bar on a spring under a pressure on its top, at once or in a ramp; its spring also pulls.
-
-    Raises
-    ------
-    ValueError
-        For a value out of its range, naming field, rule and value.
-    """
+    """An elastic bar on a spring under a pressure on its top, at once or in a ramp; its spring also pulls."""
 
     ramp: float = 0.0  # time in which the pressure rises linearly from zero [s]
 
     @classmethod
     def of(cls, problem: Problem) -> Bar:
-        """The bar that a problem reduces to.
-
-        Raises
-        ------
-        ValueError
-            If the bar is not exact for the problem.
-        """
+        """The bar that a problem reduces to; a `ValueError` if it is not exact for the problem."""
         reason = applicable(problem)
         if reason is not None or problem.rectangle is None:
             raise ValueError(f"problem: must reduce to a bar, but {reason}")

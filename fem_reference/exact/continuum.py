@@ -34,23 +34,16 @@ HUGE = 1e100
 
 
 def histories(times: Array, kappa: float, rate: float, columns: tuple[str, ...]) -> Array:
-    """Histories over their static values, shape (columns, times).
+    """Histories over their static values, shape (columns, times), at increasing times in travel times.
+
+    Instants too late for the waves to be summed are a `ValueError`.
 
     Parameters
     ----------
-    times
-        Instants in travel times, increasing, shape (times,).
     kappa
         Stiffness of the spring over that of the bar, k h / (E W).
     rate
         Damping rate per travel time, c h / (wave speed).
-    columns
-        Names of the columns.
-
-    Raises
-    ------
-    ValueError
-        If the last instant is too late for the waves to be summed.
     """
     if rate == 0 and times[-1] > LONGEST:
         raise ValueError(f"steps: must end within {LONGEST} travel times of the wave, got {float(times[-1])!r}")

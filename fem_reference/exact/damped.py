@@ -52,23 +52,9 @@ CHUNK = 2**22
 
 
 def history(waves: Waves, first: float, times: Array, kappa: float, a: float) -> Array:
-    """History of the damped bar, shape (times,).
+    """History of the damped bar from the waves of the undamped one, of which one arrives `first`, shape (times,).
 
-    Parameters
-    ----------
-    waves, first
-        Those of the undamped bar, and the arrival of the first one.
-    times
-        Instants in travel times.
-    kappa
-        Stiffness of the spring over that of the bar.
-    a
-        Half the damping rate per travel time.
-
-    Raises
-    ------
-    ValueError
-        If the waves that count until the last instant are too many.
+    Too many waves until the last instant are a `ValueError`.
     """
     # The kernel falls as exp(-a s^2 / (2 t)): earlier waves have arrived by diffusion alone, and are nothing so far.
     latest = float(np.minimum(times, np.sqrt(2 * DEAD * times / a)).max(initial=0.0))

@@ -48,14 +48,10 @@ def amplitudes(
     heights: Sequence[float] = (),
     squared: ArrayLike | None = None,
 ) -> tuple[dict[str, Complex], dict[str, Complex]]:
-    """Return the complex amplitudes of columns for a unit velocity at the base, and for a unit pressure on the top.
+    """The complex amplitudes of columns for a unit velocity at the base, and for a unit pressure on the top.
 
-    Parameters
-    ----------
-    omega
-        Angular frequencies, real or complex [rad/s], not zero.
-    squared
-        What stands for w^2 in the layers [1/s2], where they are damped.
+    The angular frequencies, real or complex, are not zero [rad/s]; `squared` stands for w^2 [1/s2] where layers are
+    damped.
     """
     w = np.asarray(omega, complex)
     w2 = np.asarray(w * w if squared is None else squared, complex)
@@ -73,7 +69,7 @@ def amplitudes(
 
 
 def _part(states: dict[int, State], name: str) -> Complex:
-    """Return a column's part of the states: of the base -1, of the surface -2, else of a height by its number."""
+    """A column's part of the states: of the base -1, of the surface -2, else of a height by its number."""
     if name == PRESSURE:
         return -states[-1][1]
     if name == DISPLACEMENT:
@@ -110,7 +106,7 @@ def _descend(ground: Ground, heights: Sequence[float], w2: Complex, state: State
 
 
 def through(modulus: float, density: float, depth: float, w2: Complex, state: State) -> State:
-    """Return the state deeper in a layer by some depth [m]."""
+    """The state deeper in a layer by some depth [m]."""
     k = np.sqrt(density * w2 / modulus)
     cosine = np.cos(k * depth)
     sine = np.sin(k * depth)
@@ -119,7 +115,7 @@ def through(modulus: float, density: float, depth: float, w2: Complex, state: St
 
 
 def across(stiffness: float, state: State) -> State:
-    """Return the state below a joint."""
+    """The state below a joint."""
     u, sigma = state
     return u - sigma / stiffness, sigma
 
@@ -132,19 +128,10 @@ def solve_layers(
     columns: Sequence[str] = (DISPLACEMENT, PRESSURE),
     heights: Sequence[float] = (),
 ) -> Result:
-    """Return the exact history at the steps, with the change by the last halving of the samples as its error.
+    """The exact history at the steps, with the change by the last halving of the samples as its error.
 
-    Parameters
-    ----------
-    scheme
-        Its step, and its gg as a rate; alpha and delta play no part.
-    drive
-        The excitation at any instants [s].
-
-    Raises
-    ------
-    ValueError
-        For an unknown column, a height outside, or gg = 0.
+    Of the scheme step and gg count, gg as a rate; `drive` is the excitation at any instants [s]. A `ValueError` for an
+    unknown column, a height outside, or gg = 0.
     """
     ground.check_request(columns, heights)
     if reason := applicable(scheme):
@@ -157,7 +144,7 @@ def solve_layers(
     picked = np.arange(1, steps + 1)
 
     def synthesis(count: int) -> Array:
-        """Return the columns at the steps from `count` samples a step, shape (columns, steps)."""
+        """The columns at the steps from `count` samples a step, shape (columns, steps)."""
         spacing = scheme.step / count
         samples = next_fast_len(math.ceil(period / spacing), real=True)
         shift = -math.log(ROUND) / (samples * spacing)

@@ -7,8 +7,8 @@ s^2 D = (psi / phi) (A - r A_0), with psi = 1 - am + am z, phi = 1 - af + af z a
     s^2 = (psi / phi) (1 - z) (1 - gg z) / (dt^2 b),   b = (e_0 z + beta) (1 - gg z) + d_u gg z (g_0 z + gamma)
     r   = (beta (1 - gg z) + d_u gg z gamma) / b
 
-in every mode alike, so that with x = s H / c the bar's own closed forms hold: a pressure at one end moves, beyond
-the rigid mode and in units of H / E,
+in every mode alike, so that with x = s H / c the bar's own closed forms hold: a pressure at one end moves, beyond the
+rigid mode and in units of H / E,
 
     that end by (x coth x - 1) / x^2,  the other by (x / sinh x - 1) / x^2,  mid-height by (x / (2 sinh(x/2)) - 1) / x^2
 
@@ -49,10 +49,7 @@ class OpeningBar(BarProblem):
     def of(cls, problem: Problem, gap: float = 0.0, velocity: float = 0.0) -> OpeningBar:
         """The bar that a problem reduces to, a gap [m] above its springs and with a velocity [m/s].
 
-        Raises
-        ------
-        ValueError
-            If the bar is not exact for the problem, or `gap` or `velocity` are out of their range.
+        A `ValueError` if it is not exact for the problem, or a number is out of its range.
         """
         reason = applicable(problem)
         if reason is not None or problem.rectangle is None:
@@ -65,8 +62,8 @@ class OpeningBar(BarProblem):
         """History under a scheme; row 0 is step 1.
 
         Its columns are `displacement` of the mid-height [m], `contact_pressure` N / W [Pa], `gap` w under the base [m],
-        negative where pressed, `closed`, 1 where the base is closed and 0 where open [-], and `velocity` of the centre
-        of mass, upwards [m/s].
+        negative where pressed, `closed`, 1 where it is, else 0 [-], and `velocity` of the centre of mass, upwards
+        [m/s].
 
         Raises
         ------
@@ -143,9 +140,9 @@ def _image(scheme: Scheme, travel: float, z: Array) -> tuple[Array, Array]:
 
 
 def closed_forms(x2: Array) -> tuple[Array, Array, Array]:
-    """(x coth x - 1) / x^2, (x / sinh x - 1) / x^2 and (x / (2 sinh(x/2)) - 1) / x^2 of complex x^2.
+    """The three closed forms above, of complex x^2.
 
-    All three are even in x and regular at zero. Since 1 / sinh x = coth(x/2) - coth x, the first one, S, is enough::
+    All are even in x and regular at zero. Since 1 / sinh x = coth(x/2) - coth x, the first one, S, is enough::
 
         (x / sinh x - 1) / x^2 = S(x/2) / 2 - S(x)
     """
@@ -170,14 +167,8 @@ def _stretch(x: Array) -> Array:
 def _stepped(bar: OpeningBar, scheme: Scheme, loaded: Array, free: Array) -> dict[str, Array]:
     """Columns of the history from step 0 on, the displacement being that of the rigid motion.
 
-    Parameters
-    ----------
-    bar, scheme
-        The bar and its scheme.
-    loaded
-        Weights of the base's own pressure [m/Pa], shape (steps + 1,).
-    free
-        What the load alone does to the base beyond the rigid motion [m], shape (steps + 1,).
+    `loaded` are the weights of the base's own pressure [m/Pa], `free` is what the load alone does to the base beyond
+    the rigid motion [m], each of shape (steps + 1,).
     """
     count = len(loaded)
     dt = scheme.step

@@ -34,20 +34,14 @@ ACCURACY = 1e-13
 STILL = 1e-9
 """Rate below which the block has come to rest, over p."""
 SWINGS = 10_000
-"""Greatest number of swings."""
+"""Most swings."""
 FALLEN = math.pi / 2
 """Rotation at which the block lies on its side and the motion ends [rad]."""
 
 
 @dataclass(frozen=True)
 class RockingBlock:
-    """A rigid rectangle on a rigid base.
-
-    Raises
-    ------
-    ValueError
-        For a value out of its range, naming field, rule and value.
-    """
+    """A rigid rectangle on a rigid base."""
 
     width: float  # a [m]
     height: float  # h [m]
@@ -107,13 +101,7 @@ class RockingMotion:
     overturned: bool  # whether it fell on its side
 
     def at(self, times: ArrayLike) -> tuple[Array, Array]:
-        """Rotation [rad] and its rate [rad/s] at instants, after an impact at it.
-
-        Raises
-        ------
-        ValueError
-            If an instant is not from 0 to `end`.
-        """
+        """Rotation [rad] and its rate [rad/s] at instants from 0 to `end`, after an impact at it."""
         t = instants(times, self.end)
         motion = np.empty((2, len(t)))
         for i, here in by_pieces(t, [swing.start for swing in self.swings]):
@@ -122,16 +110,9 @@ class RockingMotion:
 
 
 def solve(block: RockingBlock, end: float, tilt: float) -> RockingMotion:
-    """The motion of a block that is released at rest, from impact to impact.
+    """The motion of a block that is released at rest from a tilt [rad], positive about the right corner.
 
-    Parameters
-    ----------
-    block
-        The block.
-    end
-        Last instant [s]; the motion ends earlier if the block falls on its side.
-    tilt
-        Rotation at t = 0 [rad], positive about the right corner.
+    It goes from impact to impact until `end` [s], or until the block falls on its side.
 
     Raises
     ------

@@ -36,17 +36,11 @@ ROUNDING = 4 * np.finfo(float).eps
 
 @dataclass(frozen=True)
 class SlidingBlock:
-    """A rigid mass on a slope.
+    """A rigid mass on a slope."""
 
-    Raises
-    ------
-    ValueError
-        For a value out of its range, naming field, rule and value.
-    """
-
-    slope: float  # angle b of the base, down towards +x [deg]
-    friction: float  # angle phi of friction [deg]
-    gravity: float = 9.81  # acceleration of gravity [m/s2]
+    slope: float  # b of the base, down towards +x [deg]
+    friction: float  # angle phi [deg]
+    gravity: float = 9.81  # g [m/s2]
     cohesion: float = 0.0  # C, cohesive force over mass [m/s2]
 
     def __post_init__(self) -> None:
@@ -56,7 +50,7 @@ class SlidingBlock:
 
     @property
     def driving(self) -> float:
-        """G sin b [m/s2]."""
+        """Acceleration g sin b [m/s2]."""
         return self.gravity * math.sin(math.radians(self.slope))
 
     @property
@@ -73,11 +67,11 @@ class SlidingBlock:
 class Segment:
     """The base's acceleration over a time, a0 + a1 s, after a jump of its velocity."""
 
-    start: float  # first instant [s]
-    end: float  # last instant [s]
-    jump: float = 0.0  # jump of the base's velocity at the first instant [m/s]
-    a0: float = 0.0  # acceleration at the first instant [m/s2]
-    a1: float = 0.0  # its rate [m/s3]
+    start: float  # [s]
+    end: float  # [s]
+    jump: float = 0.0  # at the first instant [m/s]
+    a0: float = 0.0  # [m/s2]
+    a1: float = 0.0  # [m/s3]
 
     def acceleration(self, s: float) -> float:
         """Acceleration a time s after the start [m/s2]."""
@@ -90,9 +84,9 @@ def recorded(time: ArrayLike, acceleration: ArrayLike) -> tuple[Segment, ...]:
     Parameters
     ----------
     time
-        Instants [s], not falling, shape (rows,).
+        [s], not falling, shape (rows,).
     acceleration
-        Accelerations towards +x [m/s2], shape (rows,).
+        Towards +x [m/s2], shape (rows,).
     """
     t, a = _rows("recorded", time, acceleration)
     ends = pairwise(zip(t, a, strict=True))
@@ -106,9 +100,9 @@ def moved(time: ArrayLike, displacement: ArrayLike) -> tuple[Segment, ...]:
     Parameters
     ----------
     time
-        Instants [s], rising, shape (rows,).
+        [s], rising, shape (rows,).
     displacement
-        Displacements towards +x [m], shape (rows,).
+        Towards +x [m], shape (rows,).
     """
     t, x = _rows("moved", time, displacement)
     if np.any(np.diff(t) <= 0):
@@ -138,13 +132,7 @@ class SlidingMotion:
     ways: tuple[int, ...]  # of each of them: 1 sliding towards +x, -1 towards -x, 0 at rest on the base
 
     def at(self, times: ArrayLike) -> tuple[Array, Array]:
-        """Slide over the base towards +x [m], and its rate [m/s], each of shape (times,).
-
-        Raises
-        ------
-        ValueError
-            If an instant is not from 0 to `end`.
-        """
+        """Slide over the base towards +x [m] and its rate [m/s] at instants from 0 to `end`, each of shape (times,)."""
         t = instants(times, self.end)
         return self.slide(t), self.slide(t, 1)
 
@@ -161,21 +149,9 @@ class SlidingMotion:
 
 
 def solve(block: SlidingBlock, base: tuple[Segment, ...], end: float) -> SlidingMotion:
-    """The exact motion of a mass that is at rest with its base before t = 0.
+    """The exact motion to `end` [s] of a mass at rest before t = 0 with its base, which is `recorded` or `moved`.
 
-    Parameters
-    ----------
-    block
-        The mass and its slope.
-    base
-        The base, by `recorded` or `moved`.
-    end
-        Last instant [s].
-
-    Raises
-    ------
-    ValueError
-        If `end` is not positive and finite.
+    A `ValueError` unless `end` is positive and finite.
     """
     require(0 < end < math.inf, "end", "must be positive and finite", end)
     slide = 0.0

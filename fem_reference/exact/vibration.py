@@ -26,10 +26,7 @@ def response(
 ) -> dict[str, Complex]:
     """Complex amplitudes of the columns under the bar's pressure at frequencies in Hz, stepped or exact in time.
 
-    Raises
-    ------
-    ValueError
-        If gg = 0 where the response that is exact in time is asked for.
+    Exact in time gg = 0 is a `ValueError`.
     """
     W2, factor = np.array(answering(frequencies, scheme, exact)).swapaxes(0, 1)
     root = bar.travel * np.sqrt(W2)

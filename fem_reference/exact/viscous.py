@@ -26,12 +26,7 @@ BLOCK = 2**20
 def histories(times: Array, kappa: float, rate: float, lag: float, columns: tuple[str, ...]) -> tuple[Array, float]:
     """Histories over their static values, shape (columns, times), and the change by the last enlargement.
 
-    Parameters
-    ----------
-    times
-        Instants in travel times.
-    rate, lag
-        c times the travel time, and a1 over it.
+    `times` are in travel times; `rate` is c times the travel time, `lag` a1 over it.
     """
     count = FIRST
     histories = _summed(times, kappa, rate, lag, columns, FIRST)

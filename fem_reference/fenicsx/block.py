@@ -58,7 +58,6 @@ class Block(Elements):
         return self.on((start + low * along, start + high * along))
 
     def _differs(self, measure: Any, expected: float) -> bool:
-        """Whether a measure is another one than expected."""
         form = dolfinx.fem.form(self.constant(1.0) * measure)
         return bool(abs(COMM.allreduce(dolfinx.fem.assemble_scalar(form), MPI.SUM) - expected) > SLACK * expected)
 

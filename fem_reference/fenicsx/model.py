@@ -27,7 +27,7 @@ class Inapplicable(Exception):
 
 
 def make_mesh(points: np.ndarray, cells: np.ndarray) -> Any:
-    """Return the distributed mesh; the first rank reads all nodes, the partitioner spreads them."""
+    """The distributed mesh; the first rank reads all nodes, the partitioner spreads them."""
     cells = np.asarray(cells, np.int64)
     kind = "triangle"
     if cells.shape[1] == 4:
@@ -51,10 +51,7 @@ def make_mesh(points: np.ndarray, cells: np.ndarray) -> Any:
 class Elements:
     """M D'' + K D = F + pushes y of elements, y the displacement of the base, and the rows that observe D.
 
-    Parameters
-    ----------
-    points, cells
-        Nodes [m], shape (nodes, 2), and cells, their corners counter-clockwise.
+    Nodes have the shape (nodes, 2) [m], cells their corners counter-clockwise.
     """
 
     K: Any
@@ -83,7 +80,7 @@ class Elements:
         self.young = request["young"], request["poisson"], request["hypothesis"]
 
     def elastic(self) -> Any:
-        """Return the form lam (div u, div v) + 2 G (eps(u), eps(v))."""
+        """The form lam (div u, div v) + 2 G (eps(u), eps(v))."""
         lam, shear = (self.constant(value) for value in lame(*self.young))
         strains = ufl.inner(strain(self.u), strain(self.v))
         return (lam * ufl.div(self.u) * ufl.div(self.v) + 2 * shear * strains) * self.dx

@@ -25,13 +25,7 @@ ADAPTIVE_COLUMNS = ("discount", "kinetic_damping_loss")
 
 
 class AdaptiveDiscount:
-    """The discount of each step, and what it takes.
-
-    Raises
-    ------
-    ValueError
-        If the floor is out of range, the scheme has a damping of its own, or the load is not constant.
-    """
+    """The discount of each step under a constant load, of a scheme without a damping of its own, and what it takes."""
 
     def __init__(self, problem: Problem, scheme: Scheme, M: csr_array, floor: float) -> None:
         require(0 <= floor <= 1, "floor", "must be from 0 to 1", floor)
@@ -48,7 +42,7 @@ class AdaptiveDiscount:
         self.losses: list[float] = []
 
     def __call__(self, state: Motion) -> float:
-        """Return the discount of the step that begins with a state."""
+        """Discount of the step that begins with a state."""
         energy = float(state.V @ (self.M @ state.V)) / 2
         gg = max(self.floor, math.sqrt(energy / self.before)) if energy < self.before else 1.0
         self.before = energy

@@ -45,21 +45,14 @@ class Reduced:
     """A history from a small space."""
 
     history: Array  # columns of every step, shape (columns, steps)
-    vectors: int  # number of vectors of the space [-]
+    vectors: int  # of the space [-]
     estimate: float  # estimated error over the maximum value [-]
 
 
 def reduced(stepper: Stepper, rows: Array, steps: int) -> Reduced | str:
-    """History in the smallest sufficient space, or why there is none, in words.
+    """History under a constant load in the smallest sufficient space, or why there is none, in words.
 
-    Parameters
-    ----------
-    stepper
-        The block under a constant load.
-    rows
-        Rows of the columns, shape (columns, unknowns).
-    steps
-        Number of steps.
+    The columns are observed by `rows`, shape (columns, unknowns).
     """
     if reason := applicable(stepper.scheme):
         return reason

@@ -45,12 +45,8 @@ def response(
 
     Parameters
     ----------
-    problem, scheme
-        What vibrates and how it is integrated.
     frequencies
         Frequencies of the load [Hz], shape (count,).
-    columns
-        Columns of a history.
     along
         The fixed side of the foundation moves along this vector with its length as amplitude [m], and no load acts;
         without it the loads of the problem vibrate in phase.

@@ -31,12 +31,8 @@ def solve(
 
     Parameters
     ----------
-    problem, scheme
-        What is solved and how it is integrated.
-    steps
-        Number of steps, at least 1.
     columns
-        Columns of the history, among `fem_reference.COLUMNS`, and with a floor among `ADAPTIVE_COLUMNS`.
+        Among `fem_reference.COLUMNS`, and with a floor among `ADAPTIVE_COLUMNS`.
     full
         Solve the whole block step by step, without any saving.
     fields

@@ -22,18 +22,12 @@ from fem_reference.problem.result import Result, check_request, just_ended
 
 @dataclass(frozen=True)
 class Unilateral:
-    """How the block stands on its base, and how its contact is solved.
+    """How the block stands on its base, and how its contact is solved."""
 
-    Raises
-    ------
-    ValueError
-        For a value out of its range, naming field, rule and value.
-    """
-
-    gap: float = 0.0  # gap g0 under the whole base at t = 0 [m], at least 0
-    velocity: float = 0.0  # velocity of the block at t = 0 [m/s], upwards positive: an impact has a negative one
+    gap: float = 0.0  # g0 under the whole base at t = 0 [m], at least 0
+    velocity: float = 0.0  # at t = 0 [m/s], upwards positive
     shear: str = "frictionless"  # or "glued": shear springs of the problem's shear stiffness hold closed points
-    limit: int = 6  # greatest number of solutions of the open-close iteration before its fallback [-]
+    limit: int = 6  # most solutions of the open-close iteration before its fallback [-]
     cut: float = 0.3  # factor on a step whose contact has no solution [-], between 0 and 1
     rule: str = "newmark"  # or "implicit": the contact force of the step's end, under average acceleration
     shortest: float = 0.01  # shortest step over the scheme's own [-], above 0 and at most 1
@@ -70,16 +64,12 @@ def solve_unilateral(
 
     Parameters
     ----------
-    problem, scheme
-        What is solved and how it is integrated. A base that moves begins where the block stands.
-    steps
-        Number of steps, at least 1.
     contact
         How the block stands on its base; touching, at rest and without friction if None.
     full
         Solve the whole block where one column of elements would do.
     columns
-        Columns of the history, among `fem_reference.UNILATERAL_COLUMNS`.
+        Among `fem_reference.UNILATERAL_COLUMNS`.
 
     Raises
     ------

@@ -67,7 +67,7 @@ class Rule(NamedTuple):
 
 
 def vector_basis(mesh: Mesh, degree: int) -> Basis:
-    """Displacement basis of the given degree on a mesh of triangles or quadrilaterals."""
+    """Displacement basis of a degree on a mesh of triangles or quadrilaterals."""
     element = ElementVector(ELEMENTS[mesh.t.shape[0], degree]())
     # One order beyond 2 * degree per direction integrates the Jacobian of a bilinear cell exactly.
     return Basis(mesh, element, intorder=2 * degree + 1)
@@ -76,7 +76,7 @@ def vector_basis(mesh: Mesh, degree: int) -> Basis:
 def assembled(terms: list[tuple[float, BilinearForm]], basis: Basis, congruent: bool) -> csr_array:
     """Matrix of a sum of coefficients times forms; a term whose coefficient is zero leaves no entry.
 
-    Where all cells are translates of the first one its element matrix is that of all.
+    `congruent`: all cells are translates of the first one, whose element matrix is that of all.
     """
     terms = [(coefficient, form) for coefficient, form in terms if coefficient != 0]
     if not congruent:
@@ -92,12 +92,12 @@ def assembled(terms: list[tuple[float, BilinearForm]], basis: Basis, congruent: 
 
 
 def mass(basis: Basis, density: float, congruent: bool = False) -> csr_array:
-    """Consistent mass matrix [kg]; `congruent` where all cells are translates of the first one."""
+    """Consistent mass matrix [kg]; `congruent` as in `assembled`."""
     return assembled([(density, mass_form)], basis, congruent)
 
 
 def stiffness(basis: Basis, body: Elastic, congruent: bool = False) -> csr_array:
-    """Elastic stiffness matrix [N/m]; `congruent` where all cells are translates of the first one."""
+    """Elastic stiffness matrix [N/m]; `congruent` as in `assembled`."""
     return assembled([(body.shear_modulus, strain_form), (body.lame, dilatation_form)], basis, congruent)
 
 
@@ -133,18 +133,10 @@ def edge_rule(
     intervals: Sequence[tuple[float, float]],
     quadrature: tuple[Array, Array],
 ) -> Rule:
-    """Rule over the part of a straight edge that lies in intervals of its arc length.
+    """Rule over the part of a straight edge, given by its facets, that lies in disjoint intervals of arc length [m].
 
-    Parameters
-    ----------
-    mesh, facets
-        Facets of the edge.
-    origin, tangent
-        Start and unit direction of the edge, shape (2,).
-    intervals
-        Disjoint intervals of arc length [m].
-    quadrature
-        Places from -1 to 1 and weights on each piece: `gauss`, or one of `LUMPED`.
+    `origin` and `tangent` are its start and unit direction; `quadrature` has places from -1 to 1 and weights on each
+    piece: `gauss`, or one of `LUMPED`.
     """
     nodes, weights = quadrature
     cells = mesh.f2t[0, facets]
@@ -232,26 +224,14 @@ def components(basis: Basis) -> Array:
 
 
 def point_values(basis: Basis, point: Array) -> tuple[Array, Array, Array]:
-    """Rows that give u, v and the rotation (dv/dx - du/dy) / 2 at a point of the mesh, each (unknowns,).
-
-    Raises
-    ------
-    ValueError
-        If the point lies outside the mesh.
-    """
+    """Rows that give u, v and the rotation (dv/dx - du/dy) / 2 at a point of the mesh, each (unknowns,)."""
     rule = _cells_at(basis, point)
     u, v = values(basis, _first(rule))
     return u.toarray()[0], v.toarray()[0], _rotation(basis, rule)
 
 
 def point_rule(basis: Basis, point: Array) -> Rule:
-    """Unit weight at a point of the mesh.
-
-    Raises
-    ------
-    ValueError
-        If the point lies outside the mesh.
-    """
+    """Unit weight at a point of the mesh; a `ValueError` for a point outside of it."""
     return _first(_cells_at(basis, point))
 
 

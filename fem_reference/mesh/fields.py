@@ -19,7 +19,7 @@ from fem_reference.problem.checks import require
 from fem_reference.problem.problem import Array, Problem
 
 FRAMES = 200
-"""Greatest number of steps written."""
+"""Most steps written."""
 SUFFIXES = (".xdmf", ".vtu")
 
 
@@ -50,10 +50,7 @@ def prolongation(problem: Problem, model: Model, basis: Basis) -> csr_array:
 def frames_of(path: Path, steps: int) -> list[int]:
     """Numbers of the steps that a file has: ``.xdmf`` a series of at most `FRAMES`, ``.vtu`` the last one.
 
-    Raises
-    ------
-    ValueError
-        If the file's ending is neither, or meshio is not installed.
+    Another ending, or no meshio, is a `ValueError`.
     """
     require(path.suffix in SUFFIXES, "fields", f"must end in one of {SUFFIXES}", str(path))
     files.library()
@@ -62,13 +59,7 @@ def frames_of(path: Path, steps: int) -> list[int]:
 
 
 def write_fields(problem: Problem, model: Model, path: Path, frames: Mapping[float, Array]) -> None:
-    """Write displacement (points) and stress (cells), data inline.
-
-    Parameters
-    ----------
-    frames
-        Displacement of the model's unknowns under its load of unit size at instants.
-    """
+    """Write displacement (points) and stress (cells), data inline, by displacements under the unit load at instants."""
     meshio = files.library()
     mesh = block_mesh(problem).mesh
     basis = elasticity.vector_basis(mesh, problem.degree)

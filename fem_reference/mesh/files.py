@@ -11,13 +11,7 @@ from skfem import Mesh
 
 
 def library() -> Any:
-    """Return meshio.
-
-    Raises
-    ------
-    ValueError
-        It is not installed.
-    """
+    """Return meshio, or raise a `ValueError` where it is not installed."""
     try:
         import meshio
     except ModuleNotFoundError as error:
@@ -28,26 +22,14 @@ def library() -> Any:
 
 
 def read_data(path: str) -> Any:
-    """Return the points and cells of a file as meshio has them.
-
-    Raises
-    ------
-    ValueError
-        No reader of meshio takes the file, or meshio is not installed.
-    """
+    """The points and cells of a file as meshio has them; a `ValueError` if none of its readers takes it."""
     meshio = library()
     with _refusing(path):
         return meshio.read(path)
 
 
 def read_mesh(path: str) -> Mesh:
-    """Return the plane mesh of a file.
-
-    Raises
-    ------
-    ValueError
-        The file cannot be read, or meshio is not installed.
-    """
+    """The plane mesh of a file; a `ValueError` if it cannot be read."""
     data = read_data(path)
     from skfem.io.meshio import from_meshio
 

@@ -20,9 +20,9 @@ from fem_reference.problem.problem import Array, Indices, Problem
 class TaggedMesh:
     """A mesh and the facets of its base and top."""
 
-    mesh: Mesh  # the scikit-fem mesh, coordinates relative to the start of the base [m]
-    base: Indices  # facets of the base
-    top: Indices  # facets of the top
+    mesh: Mesh  # [m]
+    base: Indices
+    top: Indices
 
 
 def block_mesh(problem: Problem) -> TaggedMesh:
@@ -31,7 +31,8 @@ def block_mesh(problem: Problem) -> TaggedMesh:
     Raises
     ------
     ValueError
-        If the block has no file and is not a convex quadrilateral, or the file does not fit the block.
+        If the block has no file and is not a convex quadrilateral, or its file cannot be read, lacks the tags ``base``
+        and ``top``, or has another outline.
     """
     return structured(problem) if problem.mesh is None else from_file(problem)
 
@@ -39,17 +40,7 @@ def block_mesh(problem: Problem) -> TaggedMesh:
 def structured(problem: Problem, half: bool = False) -> TaggedMesh:
     """Map a tensor mesh of the unit square onto a convex quadrilateral block bilinearly.
 
-    Parameters
-    ----------
-    problem
-        The block, meshed with ``elements`` per side.
-    half
-        Mesh the half next to the start of the base only (``elements`` must be even).
-
-    Raises
-    ------
-    ValueError
-        If the block is not a convex quadrilateral.
+    `half`: that of the half next to the start of the base only, where ``elements`` must be even.
     """
     corners = problem.outline
     sides = np.roll(corners, -1, axis=0) - corners
@@ -74,13 +65,7 @@ def structured(problem: Problem, half: bool = False) -> TaggedMesh:
 
 
 def from_file(problem: Problem) -> TaggedMesh:
-    """Read a mesh of triangles or quadrilaterals and check it against the block.
-
-    Raises
-    ------
-    ValueError
-        If the file cannot be read, lacks the tags ``base`` and ``top``, or its outline is not the block's.
-    """
+    """Read a mesh of triangles or quadrilaterals and check it against the block."""
     mesh = read_mesh(str(problem.mesh))
     if mesh.dim() != 2 or mesh.t.shape[0] not in (3, 4) or mesh.p.shape[1] != mesh.nvertices:
         kind = type(mesh).__name__
@@ -114,17 +99,10 @@ def _check_outline(problem: Problem, tagged: TaggedMesh) -> None:
 
 
 def facets_along(mesh: Mesh, start: Array, end: Array, slack: float) -> tuple[Indices, Array]:
-    """Return the boundary facets that lie on a straight piece of the outline, wholly or in part.
+    """The boundary facets that lie on a straight piece of the outline, wholly or in part, and the places of their ends.
 
-    Returns
-    -------
-    tuple
-        The facets, and the arc lengths of their ends from the start [m], lower first, shape (2, facets).
-
-    Raises
-    ------
-    ValueError
-        They do not cover it.
+    These are arc lengths from the start [m], lower first, shape (2, facets). Facets that do not cover the piece are a
+    `ValueError`.
     """
     along = end - start
     length = float(np.hypot(*along))
@@ -143,13 +121,7 @@ def facets_along(mesh: Mesh, start: Array, end: Array, slack: float) -> tuple[In
 
 
 def facets_between(mesh: Mesh, start: ArrayLike, end: ArrayLike, slack: float) -> Indices:
-    """Return the boundary facets that make up a straight piece of the outline.
-
-    Raises
-    ------
-    ValueError
-        They do not cover it.
-    """
+    """The boundary facets that make up a straight piece of the outline; a `ValueError` if they do not cover it."""
     facets, places = facets_along(mesh, np.array(start, float), np.array(end, float), slack)
     if places.min() < -slack or places.max() > float(np.hypot(*np.subtract(end, start))) + slack:
         raise ValueError(f"edge: must begin and end at corners of elements, got {np.array([start, end]).tolist()}")

@@ -59,11 +59,11 @@ class Model:
 class Assembled:
     """Matrices of the block in the scikit-fem basis."""
 
-    M: csr_array  # consistent mass matrix [kg]
+    M: csr_array  # mass [kg]
     K: csr_array  # elastic stiffness without the springs [N/m]
-    springs: csr_array  # stiffness of the foundation [N/m]
+    springs: csr_array  # of the foundation [N/m]
     F: Array  # constant load of the problem [N]
-    basis: Basis  # the displacement basis; coordinates relative to the start of the base
+    basis: Basis
     observers: dict[str, Array]  # row of each column of a history
 
 
@@ -88,13 +88,7 @@ def build(problem: Problem, full: bool = False) -> Model:
 
 
 def assemble(problem: Problem) -> Assembled:
-    """Assemble mass, elastic stiffness, springs, load and observers of the whole block.
-
-    Raises
-    ------
-    ValueError
-        If the block cannot be meshed.
-    """
+    """Assemble the whole block."""
     return _assemble_on(problem, block_mesh(problem))
 
 
@@ -149,13 +143,7 @@ class ColumnLine:
 
 
 def line_of(problem: Problem) -> ColumnLine:
-    """One column of elements of an upright rectangle.
-
-    Raises
-    ------
-    ValueError
-        If the block is not an upright rectangle.
-    """
+    """One column of elements of an upright rectangle; a `ValueError` for another block."""
     width, height = problem.rectangle or (0.0, 0.0)
     require(width > 0, "vertices", "must be an upright rectangle for one column", problem.vertices)
     mesh = MeshLine(height * np.arange(problem.elements + 1) / problem.elements)
@@ -177,11 +165,6 @@ def column(problem: Problem) -> Model:
 
     With the width W and line matrices L = (u', v') and B = (u, v), rho W B for the mass, and
     E W L + 2 p b b' for v, G W L + 2 p_s b b' for u, with b the value at the base.
-
-    Raises
-    ------
-    ValueError
-        If the block is not an upright rectangle.
     """
     line = line_of(problem)
     size = len(line.height)
@@ -211,7 +194,6 @@ def column(problem: Problem) -> Model:
 
 
 def _tensor(problem: Problem) -> bool:
-    """Whether the mesh is a tensor product."""
     return problem.mesh is None and problem.cells == "quadrilaterals"
 
 

@@ -30,18 +30,12 @@ SAME_PLACE = 1e-9  # of the body's extent
 
 @dataclass(frozen=True)
 class PlaneBody(Elastic):
-    """An elastic body under constant loads that come on at t = 0.
-
-    Raises
-    ------
-    ValueError
-        For a value out of its range, naming field, rule and value.
-    """
+    """An elastic body under constant loads that come on at t = 0."""
 
     polygons: tuple[tuple[Point, ...], ...]  # that tile the body, corners counter-clockwise [m]; () with a mesh
     density: float  # [kg/m3]
-    young: float  # Young's modulus E [Pa]
-    poisson: float  # Poisson's ratio [-]
+    young: float  # E [Pa]
+    poisson: float  # [-]
     hypothesis: str = "plane stress"  # or "plane strain"
     rectangle: bool = False  # whether they tile an upright rectangle, which is meshed as one
     clamps: tuple[Segment, ...] = ()  # parts of the outline that do not move [m]
@@ -81,13 +75,7 @@ class PlaneBody(Elastic):
 
 
 def mesh_of(body: PlaneBody) -> Mesh:
-    """Return the mesh of a body.
-
-    Raises
-    ------
-    ValueError
-        Its file cannot be read.
-    """
+    """The mesh of a body; a `ValueError` if its file cannot be read."""
     if body.mesh is not None:
         return read_mesh(body.mesh) if isinstance(body.mesh, str) else body.mesh
     return _tensor_mesh(body) if body.rectangle else _fan_mesh(body)
@@ -109,7 +97,7 @@ def _tensor_mesh(body: PlaneBody) -> MeshQuad:
 
 
 def _fan_mesh(body: PlaneBody) -> MeshTri:
-    """Return triangles from the middle of each polygon, all corners that lie on its sides among its own."""
+    """Triangles from the middle of each polygon, all corners that lie on its sides among its own."""
     polygons = [np.array(polygon, float) for polygon in body.polygons]
     places = np.vstack(polygons)
     first = [min(near) for near in cKDTree(places).query_ball_point(places, body.slack)]
@@ -128,7 +116,7 @@ def _fan_mesh(body: PlaneBody) -> MeshTri:
 
 
 def _ring(polygon: Array, corners: Array, slack: float) -> list[int]:
-    """Return the numbers of the corners that lie on a polygon's sides, in its order."""
+    """The numbers of the corners that lie on a polygon's sides, in its order."""
     ring = []
     for start, end in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
         along = end - start

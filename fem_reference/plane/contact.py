@@ -32,13 +32,7 @@ UNIT = 1e-9
 
 @dataclass(frozen=True)
 class PatchContact:
-    """A spring of a body on another one or on the fixed base, over a patch of its outline.
-
-    Raises
-    ------
-    ValueError
-        For a value out of its range, naming field, rule and value.
-    """
+    """A spring of a body on another one or on the fixed base, over a patch of its outline."""
 
     first: int  # number of the body
     second: int | None  # of the body that it is on, None: the base
@@ -84,17 +78,9 @@ class ContactPoints(NamedTuple):
 
 
 def points_of(contacts: Sequence[PatchContact], bodies: Sequence[BodyElements], first: Sequence[int]) -> ContactPoints:
-    """Return the points of contacts.
+    """The points of contacts of bodies; `first` are the numbers of their first unknowns, and that of all at the end.
 
-    Parameters
-    ----------
-    bodies, first
-        The bodies, and the number of the first unknown of each; at the end the number of all.
-
-    Raises
-    ------
-    ValueError
-        A patch does not lie on the outlines of its bodies, or there is no such body.
+    A patch off the outlines of its bodies, or without such a body, is a `ValueError`.
     """
     size = first[-1]
     none = np.zeros(0)

@@ -38,10 +38,7 @@ def _traction(v, w):  # type: ignore[no-untyped-def]
 class BodyElements:
     """M D'' + K D = F of a body on its mesh, clamped unknowns left out.
 
-    Raises
-    ------
-    ValueError
-        A clamp or a load does not lie on the outline.
+    A clamp or a load off the outline is a `ValueError`.
     """
 
     def __init__(self, body: PlaneBody) -> None:
@@ -55,14 +52,13 @@ class BodyElements:
         self.F = self._load()[self.free]
 
     def elastic(self) -> csr_array:
-        """Return the stiffness of all unknowns [N/m]."""
+        """The stiffness of all unknowns [N/m]."""
         return elasticity.stiffness(self.basis, self.body)
 
     def _facets(self, part: Segment) -> Indices:
         return facets_between(self.mesh, *part, self.body.slack)
 
     def _fixed(self) -> Indices:
-        """Numbers of the unknowns that do not move."""
         fixed = [np.empty(0, np.int64)]
         for clamp in self.body.clamps:
             fixed.append(self.basis.get_dofs(self._facets(clamp)).all())
@@ -103,7 +99,6 @@ class BodyElements:
 
     @cached_property
     def _means(self) -> Array:
-        """Rows of `means` on all unknowns."""
         parts = [_displacement.assemble(self.basis, x_part=x, y_part=y) for x, y in ((1.0, 0.0), (0.0, 1.0))]
         u_x, u_y, v_x, v_y = (_gradient.assemble(self.basis, i=i, j=j) for i in (0, 1) for j in (0, 1))
         parts += [(v_x - u_y) / 2, u_x, v_y, u_y + v_x]
@@ -115,12 +110,9 @@ class BodyElements:
         return self._means[:, self.free]
 
     def observer(self, start: Point, end: Point) -> Array:
-        """Return the rows of the mean displacement in x and y of a part of the outline, or of a point, (2, unknowns).
+        """The rows of the mean displacement in x and y of a part of the outline, or of a point, (2, unknowns).
 
-        Raises
-        ------
-        ValueError
-            Nothing lies there.
+        A `ValueError` if nothing lies there.
         """
         if start == end:
             return self._at(start)[:, self.free]
@@ -137,12 +129,9 @@ class BodyElements:
         return np.array([dilatation + 2 * shear * e_xx, dilatation + 2 * shear * e_yy, shear * g_xy])
 
     def stress_error(self, D: Array) -> float:
-        """Return the largest difference of a stress component from the loads' own, over the largest of these.
+        """The largest difference of a stress component from the loads' own, over the largest of these.
 
-        Raises
-        ------
-        ValueError
-            The loads are not those of a stress.
+        A `ValueError` if the loads are not those of a stress.
         """
         stress = np.array(self.body.stress)
         if not np.any(stress):

@@ -39,7 +39,7 @@ from fem_reference.scheme.stage import Motion
 SHIFT = 1e-3  # of the square of the lowest frequency of a shear wave: keeps K + shift M definite where a body is free
 UNBALANCED = 1e-9  # of the sum of the loads' sizes: what rounding leaves of a balanced load
 UNHELD = 1e-9  # of the stiffest rigid motion on its springs: a motion below its square is held by none
-REST_SOLVES = 50  # greatest number of sets of closed points that are tried for a rest
+REST_SOLVES = 50  # most sets of closed points that are tried for a rest
 CUT = Cut(0.3, 0.01)  # of a step whose contact has no solution, as of a block
 
 
@@ -58,8 +58,8 @@ class Rest:
 class BodiesResult(Result):
     """Histories of the steps that were reached; row 0 is step 1, and a contact has a column of its arrays."""
 
-    normal: Array  # force out of the second body on the first [N]
-    shear: Array  # force on the first body clockwise of that [N]
+    normal: Array  # as of `Rest` [N]
+    shear: Array
     gap: Array  # mean distance over the patch, negative where the springs are shortened [m]
     slip: Array  # mean of what its points have slid while closed, there less back [m]
     closed: Array  # share of the patch that is closed [-]
@@ -77,8 +77,6 @@ class PlaneModel:
     ----------
     bodies
         Their unknowns come one body after the other.
-    contacts
-        Springs over patches of their outlines.
     base_motion
         Of what is fixed below the contacts, zero at t = 0.
 
@@ -103,17 +101,11 @@ class PlaneModel:
         self.base_motion = base_motion
 
     def observer(self, start: Point, end: Point, body: int = 0) -> Array:
-        """Return the rows of the mean displacement in x and y of a part of a body's outline, or of a point.
-
-        Raises
-        ------
-        ValueError
-            Nothing lies there.
-        """
+        """The rows of `BodyElements.observer` of a body, on all unknowns."""
         return self.rows(self.parts[body].observer(start, end), body)
 
     def means(self, body: int) -> Array:
-        """Rows of the means over a body of u, v, rotation, e_xx, e_yy and g_xy, shape (6, unknowns)."""
+        """Rows of `BodyElements.means` of a body, shape (6, unknowns)."""
         return self.rows(self.parts[body].means, body)
 
     def rows(self, of_body: Array, body: int) -> Array:
@@ -128,7 +120,7 @@ class PlaneModel:
         return np.asarray(dense_block_diag(*(part.motions for part in self.parts)))
 
     def highest_frequency(self) -> float:
-        """Return the largest natural frequency of all states: all points closed and sticking [rad/s]."""
+        """The largest natural frequency of all states: all points closed and sticking [rad/s]."""
         return largest_frequency(self._stiffness(self.points.all_closed), self.M)
 
     @cached_property
@@ -164,17 +156,11 @@ class PlaneModel:
         return self.settled.D
 
     def stress_error(self) -> float:
-        """Return the largest difference of a stress component at rest from the loads' own, of the first body.
-
-        Raises
-        ------
-        ValueError
-            The loads are not those of a stress.
-        """
+        """Return `BodyElements.stress_error` of the first body at rest."""
         return self.parts[0].stress_error(self.rest[: self.first[1]])
 
     def modes(self, scheme: Scheme, count: int) -> tuple[Mode, ...]:
-        """Return the lowest modes that are no free motion, all points closed and sticking, in rising order."""
+        """The lowest modes that are no free motion, all points closed and sticking, in rising order."""
         closed = self.points.all_closed
         K = self._stiffness(closed)
         first = self.parts[0].body
@@ -188,7 +174,7 @@ class PlaneModel:
     def history(
         self, scheme: Scheme, steps: int, rows: Array, *, settled: bool = False, limit: int = 6
     ) -> BodiesResult:
-        """Return what some rows observe of the bodies, at each step, with their contacts and energies.
+        """What some rows observe of the bodies, at each step, with their contacts and energies.
 
         They begin unstrained with their velocities, or at rest under their loads. A numerical failure is an outcome:
         the history then ends with the last step that was reached.
@@ -200,7 +186,7 @@ class PlaneModel:
         settled
             Whether they begin at `rest`.
         limit
-            Greatest number of solutions of the open-close iteration before its fallback.
+            Most solutions of the open-close iteration before its fallback.
         """
         began = time.perf_counter()
         system, compiled, notes = compilation.prepared(self._system(scheme, rows), steps)
@@ -244,7 +230,6 @@ class PlaneModel:
         )
 
     def _start(self, stepper: ContactStepper, settled: bool) -> ContactState:
-        """The bodies at t = 0."""
         rows = self.points.rows
         gap = self.points.gap
         states = np.where(gap[rows.partner] > 0, AT_LOWER, INSIDE).astype(np.int8)
@@ -262,7 +247,6 @@ class PlaneModel:
         return stepper.start(unknowns(V), place, states, unknowns(D), force)
 
     def _kept(self, record: Record) -> dict[str, Any]:
-        """What a result has of some steps."""
         points = self.points
         mean = points.share[:, None]
         return {
@@ -292,13 +276,7 @@ class PlaneModel:
         return np.asarray(motions @ null_space(np.vstack([springs, np.zeros(motions.shape[1])]), rcond=UNHELD))
 
     def _rest_of(self, closed: Flags) -> Array:
-        """Displacements at rest with springs at the closed rows alone, orthogonal to what they do not hold.
-
-        Raises
-        ------
-        ValueError
-            The loads have a resultant that nothing holds.
-        """
+        """Displacements at rest with springs at the closed rows alone, orthogonal to what they do not hold."""
         points = self.points
         F = self.F - points.B[closed].T @ (points.gap / points.rows.compliance)[closed]
         K = self._stiffness(closed)

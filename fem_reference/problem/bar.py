@@ -16,22 +16,17 @@ class BarProblem:
     """An elastic bar that is dropped on or pressed against a no-tension base spring.
 
     At t = 0 the bar is unstrained, its base a gap above the spring, and all loads are switched on.
-
-    Raises
-    ------
-    ValueError
-        For a value out of its range, naming field, rule and value.
     """
 
-    height: float  # length H of the bar [m]
-    width: float  # width W [m], unit thickness
-    density: float  # mass density rho [kg/m3]
+    height: float  # H [m]
+    width: float  # W [m], unit thickness
+    density: float  # rho [kg/m3]
     young: float  # axial modulus: E in plane stress, E / (1 - mu^2) in plane strain [Pa]
-    base_stiffness: float  # stiffness k = 2 p of the base spring [N/m]
-    pressure: float = 0.0  # pressure q on the top [Pa], downwards, from t = 0 on
-    gravity: float = 0.0  # acceleration of gravity, downwards [m/s2]
-    gap: float = 0.0  # gap g0 under the base at t = 0 [m]
-    velocity: float = 0.0  # velocity of the bar at t = 0 [m/s], upwards positive: an impact has a negative one
+    base_stiffness: float  # k = 2 p [N/m]
+    pressure: float = 0.0  # q on the top [Pa], downwards, from t = 0 on
+    gravity: float = 0.0  # downwards [m/s2]
+    gap: float = 0.0  # g0 under the base at t = 0 [m]
+    velocity: float = 0.0  # at t = 0 [m/s], upwards positive
 
     def __post_init__(self) -> None:
         require_numbers(self, POSITIVE, ("gap",))

@@ -9,13 +9,7 @@ from typing import Any
 
 
 def require(condition: bool, field: str, rule: str, value: object) -> None:
-    """Raise for a value that breaks a rule.
-
-    Raises
-    ------
-    ValueError
-        If the condition does not hold.
-    """
+    """Raise a `ValueError` that names field, rule and value, unless a condition holds."""
     if not condition:
         raise ValueError(f"{field}: {rule}, got {value!r}")
 
@@ -23,21 +17,9 @@ def require(condition: bool, field: str, rule: str, value: object) -> None:
 def require_numbers(
     data: Any, positive: Collection[str] = (), unsigned: Collection[str] = (), infinite: Collection[str] = ()
 ) -> None:
-    """Raise for a number among the fields of a dataclass that is not finite, or out of its range.
+    """Raise a `ValueError` for the first number of a dataclass that is not finite, or out of its range.
 
-    Parameters
-    ----------
-    data
-        The dataclass.
-    positive, unsigned
-        Fields that must be positive, or not negative.
-    infinite
-        Fields that may be infinite.
-
-    Raises
-    ------
-    ValueError
-        For the first field that is wrong.
+    Fields that are named must be positive, or not negative (`unsigned`), or may be infinite.
     """
     for field in fields(data):
         name = field.name

@@ -55,14 +55,9 @@ def coarse(problem: Problem, step: float, opens: bool = False) -> tuple[str, ...
 
 
 def bounded(history: Array, pressure: float) -> Array:
-    """Return the history of a unit pressure times the pressure, infinite from its first overflow on.
+    """The history of a unit pressure, (columns, steps), times the pressure [Pa], infinite from its first overflow on.
 
-    Parameters
-    ----------
-    history
-        Shape (columns, steps).
-    pressure
-        Pressure [Pa]; nothing moves without it, whatever an unstable scheme makes of a unit load.
+    Nothing moves without it, whatever an unstable scheme makes of a unit load.
     """
     if pressure == 0:
         return np.zeros_like(history)

@@ -11,7 +11,7 @@ from fem_reference.problem.problem import Array
 
 
 def instants(times: ArrayLike, end: float) -> Array:
-    """Return times as an array, shape (times,) [s].
+    """Times as an array, shape (times,) [s].
 
     Raises
     ------

@@ -12,17 +12,11 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Motion:
-    """Displacement of the foundation's fixed side, piecewise linear, held beyond both ends of its record.
-
-    Raises
-    ------
-    ValueError
-        For a record that is not one of increasing instants and finite numbers.
-    """
+    """Displacement of the foundation's fixed side, piecewise linear, held beyond both ends of its record."""
 
     time: tuple[float, ...]  # instants [s], increasing
-    x: tuple[float, ...]  # horizontal displacement at the instants [m]
-    y: tuple[float, ...]  # vertical displacement at the instants [m]
+    x: tuple[float, ...]  # displacement at the instants [m]
+    y: tuple[float, ...]  # the same [m]
 
     def __post_init__(self) -> None:
         if not len(self.time) == len(self.x) == len(self.y) > 0:
@@ -43,10 +37,7 @@ class Motion:
 def moved_base(motion: Motion | None, positions: Array, times: Array) -> Array:
     """Displacement of a base in x and y at the ends of the stages, shape (steps, stages, 2) [m]; zero without motion.
 
-    Parameters
-    ----------
-    positions, times
-        Of the steps [steps], and of the ends of their stages [s], shape (steps, stages).
+    `positions` are those of the steps [steps], `times` those of the ends of their stages [s], shape (steps, stages).
     """
     if motion is None:
         return np.zeros((*times.shape, 2))

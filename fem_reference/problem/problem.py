@@ -31,36 +31,31 @@ SAME_MATRIX = 1e-15
 class Problem(Elastic):
     """One elastic block on a locked elastic foundation under loads that come on at t = 0, at once or in a ramp.
 
-    The block occupies a simple polygon. Its base edge rests on springs normal and tangential to that
-    edge; a pressure acts vertically downwards and a traction sideways per unit length of the top edge,
-    gravity on the whole block, and the fixed side of the springs may move.
-
-    Raises
-    ------
-    ValueError
-        For a value out of its range, naming field, rule and value.
+    The block occupies a simple polygon. Its base edge rests on springs normal and tangential to it; pressure and
+    traction act per unit length of the top edge, gravity on the whole block, and the fixed side of the springs may
+    move.
     """
 
     vertices: tuple[tuple[float, float], ...]  # corners, counter-clockwise [m]; edge i runs from vertex i to i + 1
     base: int  # index of the edge that stands on the springs
     top: int  # index of the loaded edge
-    density: float  # mass density rho [kg/m3]
-    young: float  # Young's modulus E [Pa]
-    poisson: float  # Poisson's ratio mu [-]
+    density: float  # rho [kg/m3]
+    young: float  # E [Pa]
+    poisson: float  # mu [-]
     hypothesis: str  # ``"plane stress"`` or ``"plane strain"``
-    stiffness: float  # normal stiffness p of one corner spring [N/m]; the foundation carries 2 p in all
-    shear_stiffness: float  # tangential stiffness of one corner spring [N/m]
-    pressure: float  # pressure q on the top edge [Pa], downwards
-    elements: int = 16  # elements along each side of a structured mesh [-]
-    degree: int = 2  # polynomial degree of the elements [-], 1 or 2
-    mesh: str | None = None  # mesh file with the boundary tags ``base`` and ``top``; None meshes the block itself
+    stiffness: float  # p of one corner spring, normal [N/m]; the foundation carries 2 p in all
+    shear_stiffness: float  # p_s, tangential [N/m]
+    pressure: float  # q on the top edge [Pa], downwards
+    elements: int = 16  # along each side of a structured mesh [-]
+    degree: int = 2  # of the elements [-], 1 or 2
+    mesh: str | None = None  # file with the boundary tags ``base`` and ``top``; None meshes the block itself
     foundation: str = "distributed"  # or "patch", "corner"; "nodes": p l/a at each end of a base facet of length l
-    patch_width: float | None = None  # width w of each of the two end patches [m], 0 < w <= a/2; only with ``"patch"``
+    patch_width: float | None = None  # w of each of the two end patches [m], 0 < w <= a/2; only with ``"patch"``
     cells: str = "quadrilaterals"  # or "triangles", each cut from lower left to upper right, of a structured mesh
     eccentricity: float = 0.0  # shift towards +x of the middle of the pressed part of the top, L - 2 |e| long [m]
-    traction: float = 0.0  # traction towards +x on the whole top edge [Pa]
-    gravity: float = 0.0  # acceleration of gravity g [m/s2], downwards where there is no slope
-    motion: Motion | None = None  # motion of the fixed side of the foundation
+    traction: float = 0.0  # towards +x on the whole top edge [Pa]
+    gravity: float = 0.0  # g [m/s2], downwards where there is no slope
+    motion: Motion | None = None  # of the fixed side of the foundation
     slope: float = 0.0  # angle b of the incline that the block stands on [deg]: gravity is g (sin b, -cos b) in x, y
     ramp: float = 0.0  # time in which pressure, traction and gravity rise linearly from zero [s]
 
@@ -204,18 +199,12 @@ class Problem(Elastic):
 
 @dataclass(frozen=True)
 class Scheme:
-    """A time scheme with kinetic damping: Newmark's (paper, equations (5) to (7)), or one given by a table of stages.
-
-    Raises
-    ------
-    ValueError
-        For a value out of its range, naming field, rule and value.
-    """
+    """A time scheme with kinetic damping: Newmark's (paper, eq. (5) to (7)), or one given by a table of stages."""
 
     alpha: float  # Newmark's weight of the new acceleration in the displacement [-]; NaN for a scheme with a table
-    delta: float  # Newmark's weight of the new acceleration in the velocity [-]; NaN for a scheme with a table
+    delta: float  # the same in the velocity [-]
     gg: float  # factor on the velocity at the start of each step [-], 0 to 1
-    step: float  # time step dt [s]
+    step: float  # dt [s]
     start: Literal["zero", "consistent"] | str = "zero"  # initial acceleration: A0 = 0 as the paper, or M A0 = F
     mass_damping: float = 0.0  # a0 of C = a0 M + a1 K [1/s]
     stiffness_damping: float = 0.0  # a1 [s]

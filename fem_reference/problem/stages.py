@@ -17,14 +17,14 @@ from typing import NamedTuple
 
 
 class Stage(NamedTuple):
-    """One solution of a step; the numbers are those of the formulas above."""
+    """One solution of a step; the numbers are the weights in the formulas above."""
 
-    beta: float  # weight of the new acceleration in the displacement [-]; 0: the stage is explicit
-    gamma: float  # weight of the new acceleration in the velocity [-]
-    e_0: float  # weight of the step's first acceleration in the displacement [-]
-    g_0: float  # weight of it in the velocity [-]
-    d_u: float = 1.0  # weight of the step's first velocity in the displacement [-]
-    d_g: float = 0.0  # weights of the stage before [-]
+    beta: float  # of the new acceleration in the displacement [-]; 0: the stage is explicit
+    gamma: float  # of it in the velocity [-]
+    e_0: float  # of the step's first acceleration in the displacement [-]
+    g_0: float  # of it in the velocity [-]
+    d_u: float = 1.0  # of the step's first velocity in the displacement [-]
+    d_g: float = 0.0  # of the stage before [-]
     e_g: float = 0.0
     g_g: float = 0.0
     am: float = 0.0  # share of the step's start in the inertia [-]
@@ -33,17 +33,17 @@ class Stage(NamedTuple):
 
     @property
     def compliance(self) -> float:
-        """B = beta / (1 - am): dt^2 b M^-1 is what a force at the stage's end does to x1 where K is nothing."""
+        """The b = beta / (1 - am): dt^2 b M^-1 is what a force at the stage's end does to x1 where K is nothing."""
         return self.beta / (1 - self.am)
 
     @property
     def stiffness_weight(self) -> float:
-        """beta' = beta (1 - af) / (1 - am) of the stage's matrix S = M + gamma' dt C + beta' dt^2 K."""  # noqa: D403
+        """Of K in the stage's matrix S = M + gamma' dt C + beta' dt^2 K: beta' = beta (1 - af) / (1 - am)."""
         return self.compliance * (1 - self.af)
 
     @property
     def damping_weight(self) -> float:
-        """gamma' = gamma (1 - af) / (1 - am) of the stage's matrix."""  # noqa: D403
+        """Of C there: gamma' = gamma (1 - af) / (1 - am)."""
         return self.gamma / (1 - self.am) * (1 - self.af)
 
 

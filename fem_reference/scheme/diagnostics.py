@@ -25,7 +25,7 @@ class Diagnostics:
 
 
 def diagnostics(problem: Problem, scheme: Scheme, full: bool = False, model: Model | None = None) -> Diagnostics:
-    """Return conditioning, residual and spectral radius of the step."""
+    """Conditioning, residual and spectral radius of the step."""
     model = build(problem, full) if model is None else model
     small = len(model.F) <= DENSE
     # all frequencies of a small mesh, the lowest ones and the highest of a large one

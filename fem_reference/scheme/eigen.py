@@ -22,23 +22,16 @@ DENSE = 400
 def modes(
     problem: Problem, scheme: Scheme, count: int = 12, full: bool = False, model: Model | None = None
 ) -> tuple[Mode, ...]:
-    """Natural modes, greatest share of the static response first.
+    """Natural modes by falling share of the static response; the first one is the first axial mode.
 
     Parameters
     ----------
-    problem, scheme
-        What is solved and how it is integrated.
     count
         Number of lowest modes computed; doubled until the first axial mode is certainly among them.
     full
         Use the whole block instead of the model with exact savings.
     model
         The model of `problem` (and `full`) where it was built before.
-
-    Returns
-    -------
-    tuple of Mode
-        The first one is the first axial mode.
     """
     model = build(problem, full) if model is None else model
     F = model.F if np.any(model.F) else _carried(problem, model)
@@ -107,13 +100,7 @@ def highest_frequency(problem: Problem, full: bool = False, model: Model | None 
 
 
 def largest_frequency(K: csr_array, M: csr_array) -> float:
-    """Largest natural frequency of M D'' + K D = 0 [rad/s].
-
-    Raises
-    ------
-    OverflowError
-        If mass or stiffness leave the range of double precision.
-    """
+    """Largest natural frequency of M D'' + K D = 0 [rad/s]; an `OverflowError` beyond double precision."""
     size = K.shape[0]
     if not (np.isfinite(K.data).all() and np.isfinite(M.data).all()):
         raise OverflowError("mass or stiffness of the elements is out of range")

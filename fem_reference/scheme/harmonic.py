@@ -42,12 +42,8 @@ class StepSystem(NamedTuple):
 def step_system(frequencies: Array, scheme: Scheme, exact: bool) -> StepSystem:
     """Equations of the stages of one step at frequencies in Hz, or of the motion that is exact in time.
 
-    The latter is one stage with v = i w x and a = -W2 x; W2 = w^2 - i c w with the rate c = -ln(gg) / dt of gg.
-
-    Raises
-    ------
-    ValueError
-        If gg is zero where the exact motion is asked for: it has no rate.
+    The latter is one stage with v = i w x and a = -W2 x; W2 = w^2 - i c w with the rate c = -ln(gg) / dt of gg. A gg of
+    zero has no rate, and is a `ValueError` there.
     """
     dt = scheme.step
     w = 2 * np.pi * np.array(frequencies, float, ndmin=1)[:, None]

@@ -118,19 +118,9 @@ def _newmark_bounded(scheme: Scheme) -> bool:
 
 
 def weighted_response(omega: Array, weights: Array, scheme: Scheme, steps: int) -> Array:
-    """Sum over modes of weights times w^2 D under a unit load from rest, at steps 1 to `steps`.
+    """Sum over modes of weights times w^2 D under a unit load from rest, at steps 1 to `steps`, (quantities, steps).
 
-    Parameters
-    ----------
-    omega
-        W = w dt of each mode, shape (modes,).
-    weights
-        One row for each quantity, shape (quantities, modes).
-
-    Returns
-    -------
-    ndarray
-        Shape (quantities, steps).
+    `omega` has W = w dt of each mode, `weights` a row for each quantity.
     """
     total = np.zeros((len(weights), steps))
     for begin in range(0, len(omega), CHUNK):
@@ -142,19 +132,9 @@ def weighted_response(omega: Array, weights: Array, scheme: Scheme, steps: int) 
 
 
 def affine_step(scheme: Scheme, bodies: Sequence[Body], load: Array) -> tuple[Extended, Array]:
-    """Map of one step of modes in lengths of dt, and where they begin.
+    """Map of one step of modes on (x, v, a, 1) in lengths of dt, (modes, 4, 4), and that state at t = 0, (modes, 4).
 
-    Parameters
-    ----------
-    bodies
-        The modes in each stage, in extended precision.
-    load
-        Load of each mode, shape (modes,).
-
-    Returns
-    -------
-    tuple
-        Map of (x, v, a, 1), shape (modes, 4, 4), and that state at t = 0, shape (modes, 4).
+    The bodies are the modes in each stage, in extended precision; each has a load.
     """
     units = np.eye(4)[:, :, None] * np.ones_like(load)
     x, v, a, acting = units  # of each unit state, shape (4, modes)
@@ -190,19 +170,9 @@ def ramped_response(omega: Array, weights: Array, scheme: Scheme, steps: int, sh
 def power_histories(step: Extended, start: Array, weights: Array, steps: int) -> Array:
     """Weighted sums of the first entry of modes at every step, shape (quantities, steps).
 
-    Step 1 + i + j B is the row of 1 + i steps times the state after j B: about the root of the steps of each are made,
-    one after the other in extended precision.
-
-    Parameters
-    ----------
-    step
-        Map of one step, shape (modes, 4, 4).
-    start
-        State of each mode at t = 0, shape (modes, 4).
-    weights
-        Shape (quantities, modes).
-    steps
-        Number of steps.
+    They come from the map of one step, (modes, 4, 4), and the states at t = 0, (modes, 4). Step 1 + i + j B is the row
+    of 1 + i steps times the state after j B: about the root of the steps of each are made, one after the other in
+    extended precision.
     """
     block = math.isqrt(steps - 1) + 1
     rows = np.empty((block, *start.shape))

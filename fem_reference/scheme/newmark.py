@@ -18,17 +18,14 @@ from fem_reference.scheme.stage import Body, Motion, step_change
 class Work:
     """Counters of the work done."""
 
-    factorisations: int = 0  # number of factorisations [-]
-    solves: int = 0  # number of solutions with a factorised matrix [-]
-    nonzeros: int = 0  # stored entries of the last matrix factorised [-]
+    factorisations: int = 0
+    solves: int = 0  # with a factorised matrix [-]
+    nonzeros: int = 0  # of the last matrix factorised [-]
 
     def factor(self, matrix: csr_array) -> Callable[[Array], Array]:
         """Factorise a symmetric positive definite matrix; return the counted solver of right-hand sides.
 
-        Raises
-        ------
-        FloatingPointError
-            If rounding has made it singular.
+        Raises a `FloatingPointError` if rounding has made it singular.
         """
         # Positive definite: pivots on the diagonal are safe and keep the symmetric fill-in.
         options = {"SymmetricMode": True}
@@ -59,7 +56,7 @@ class Operator:
 
 
 def operator(matrix: Any) -> Operator:
-    """Return the products with a sparse matrix."""
+    """The products with a sparse matrix."""
     return Operator(lambda vector: matrix @ vector)
 
 
@@ -124,16 +121,9 @@ class Stepper:
         return Motion(zero, start_velocity(zero, A, self.scheme), A)
 
     def advance(self, state: Motion, loads: Sequence[Array] | None = None, gg: float | None = None) -> Motion:
-        """One step.
+        """One step, under the loads at its start and at the end of each stage, where they are not the constant one.
 
-        Parameters
-        ----------
-        state
-            At its start.
-        loads
-            At its start and at the end of each stage, where they are not the constant one.
-        gg
-            Discount of this step, where it is not the scheme's.
+        Its discount is `gg`, where that is not the scheme's.
         """
         loads = [self.F] * (len(self.solves) + 1) if loads is None else loads
         gg = self.scheme.gg if gg is None else gg

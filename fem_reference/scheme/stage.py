@@ -14,8 +14,7 @@ explicit, and for a body that no spring of K holds, the same is
 
     e = S^-1 [R - K (D + (1 - af) dD*)],     dD = dD* + b h^2 e,     A1 = e / (1 - am)
 
-in which a rigid motion has no forces. Newmark's only stage has d_u = 1, e_0 = 1/2 - alpha, beta = alpha,
-g_0 = 1 - delta, gamma = delta, am = af = 0.
+in which a rigid motion has no forces.
 
 M, C, K and S^-1 are numbers, diagonals or operators (`fem_reference.scheme.newmark.Operator`): all that is asked of
 them is the product with a vector, written as that of numbers. The functions run as they stand, or compiled by numba.
@@ -60,7 +59,7 @@ def velocity_at_end(stage: Stage, h: float, gg: float, start: Motion, before: Mo
 
 
 def undamped_load(stage: Stage, h: float, gg: float, M: Any, C: Any, start: Motion, before: Motion, F: Any) -> Any:
-    """Return R = F* - am M A - C [(1 - af) V* + af u]."""
+    """The R above."""
     if stage.am != 0:
         F = F - stage.am * (M * start.A)
     if C is None:
@@ -83,7 +82,7 @@ def free_acceleration(
 def end_of_stage(
     stage: Stage, h: float, gg: float, start: Motion, before: Motion, predicted: Any, e: Any, origin: Any
 ) -> Motion:
-    """Return the end of a stage with the acceleration e; its displacement is counted from an origin, D or zero."""
+    """The end of a stage with the acceleration e; its displacement is counted from an origin, D or zero."""
     b = stage.beta / (1 - stage.am) * h**2
     A = e if stage.am == 0 else e / (1 - stage.am)
     return Motion(origin + (predicted + b * e), velocity_at_end(stage, h, gg, start, before, A), A)
@@ -108,14 +107,9 @@ def mean_load(stage: Stage, first: Any, last: Any) -> Any:
 
 
 def step_change(scheme: Any, gg: float, h: float, bodies: Any, start: Motion, loads: Any) -> Motion:
-    """Return the end of a step as a change of the displacement, under the loads at its start and at the stages' ends.
+    """The end of a step as a change of the displacement, under the loads at its start and at the stages' ends.
 
-    Parameters
-    ----------
-    scheme : Scheme
-        Whose stages are made.
-    bodies : sequence of Body
-        One for each stage.
+    Each stage has a body of its own.
     """
     before = start
     for stage, body, load in zip(scheme.stages, bodies, loads[1:], strict=True):

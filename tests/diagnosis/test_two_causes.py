@@ -88,6 +88,17 @@ def test_two_factors_of_a_product_stand_for_two_others(monkeypatch):
         assert with_same_rows(target, OWN, alone).same_rows == ()
 
 
+def test_a_density_and_a_modulus_stand_for_a_height(monkeypatch):
+    young = Move("young-factor", {}, ("young",), (0.8,))
+    tall = Move("height-factor", {}, ("tall",), (1.2,))
+    monkeypatch.setattr(search, "moves", lambda *given: [FEW[3], young, tall])
+    target, one, _ = told(replace(OWN, tall=1.25))
+    named = with_same_rows(target, OWN, one)
+    assert (named.explained, named.best.ids) == (True, ("height-factor",))
+    (pair,) = (each.fit.variant for each in named.same_rows if {*each.ids} == {"density-factor", "young-factor"})
+    assert (pair.density, pair.young) == pytest.approx((1.25, 0.8), rel=1e-4)
+
+
 def test_two_variants_are_one_program_at_every_step():
     target = target_of(OWN)
     average = replace(OWN, start="consistent", **AVERAGE)

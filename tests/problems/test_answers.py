@@ -99,18 +99,18 @@ MISTAKES = {
     "a table that is missing": (
         FILE,
         lambda text: text.replace("0.002", '{"spall": 0.002}'),
-        (f"{FILE}:9:13", "step_s", "no such file"),
+        (FILE, "step_s", "no such file"),
     ),
     "a problem that nobody asks": (
         FILE,
         lambda text: text.replace("0.002", '{"spal": 0.002}'),
-        (f"{FILE}:9:13", "step_s", None),
+        (FILE, "step_s", None),
     ),
 }
 
 
 @pytest.mark.parametrize("mistake", MISTAKES)
-def test_a_mistake_is_named_with_line_and_character(mistake, tmp_path):
+def test_a_mistake_is_named_with_its_place(mistake, tmp_path):
     file, change, defect = MISTAKES[mistake]
     answered(tmp_path, names=("locked",))
     spoilt(tmp_path, file, change)
@@ -126,7 +126,7 @@ def test_all_defects_of_all_files_are_listed_at_once(tmp_path):
     (other / "Locked.csv").write_text("")
     (tmp_path / "forgotten").mkdir()
     (tmp_path / "forgotten" / "locked.csv").write_text("")
-    expected = {"coarse/locked.csv:4:7", "coarse/rocking.csv:1:8", f"fine/{FILE}:1:1", "fine/Locked.csv"}
+    expected = {"coarse/locked.csv:4:7", "coarse/rocking.csv:1:8", f"fine/{FILE}", "fine/Locked.csv"}
     found = [place for place, *_ in defects_of(tmp_path)]
     assert set(found) == expected | {f"forgotten/{FILE}"}
     assert len(found) == len(expected) + 1  # `again` is the same as `coarse` only where that can be read
@@ -282,16 +282,16 @@ def test_what_other_programs_write_is_read(written, tmp_path):
 )
 def test_a_wrong_field_is_named(fields, field, value, tmp_path):
     ((place, found, shown),) = defects_of(answered(tmp_path, names=("locked",), **fields))
-    assert place.startswith(f"{FILE}:") and found == field
+    assert (place, found) == (FILE, field)
     assert shown.strip("'")[:50] == value.strip("'")[:50]
 
 
 @pytest.mark.parametrize(
     ("content", "defect"),
     [
-        ("[1]", (f"{FILE}:1:1", None, "list")),
+        ("[1]", (FILE, None, "list")),
         ("{", (f"{FILE}:1:2", None, None)),
-        (json.dumps(STATED).replace('{"format"', '{"pack": "1.0", "format"'), (f"{FILE}:1:55", "pack", None)),
+        (json.dumps(STATED).replace('{"format"', '{"pack": "1.0", "format"'), (FILE, "pack", None)),
     ],
 )
 def test_files_that_are_no_such_files(content, defect, tmp_path):

@@ -1,4 +1,1 @@
-"""The damping that a scene really has, what to choose instead, and alarms.
-
-Closed forms of the scheme and finished rows come in; nothing that runs a study.
-"""
+"""The damping that a scene really has, what to choose instead, and alarms, from closed forms and finished rows."""

@@ -1,8 +1,8 @@
 """The adviser across schemes: which of them, at which step, has a damping ratio at a frequency, and at what price.
 
 Damping ratios are those of the roots of a step (`theory.stepping`), rebounds those of a rigid mass on a spring
-(`theory.rebound`). Of each scheme the step is taken at which xi first reaches the target, from small steps on; the
-families of one parameter are asked at the present step too.
+(`theory.rebound`). The step of a scheme is the smallest at which xi reaches the target; the families of one parameter
+are asked at the present step too.
 """
 
 from __future__ import annotations
@@ -120,7 +120,7 @@ def advise_across(
     check_ratio(damping, LEAST_RATIO)
     Limit("frequency").check(frequency)
     features.refuse_damping(scene, "advise")
-    # A block whose contact stays closed, which has modes; one that opens must be a rectangle on springs.
+    # a block whose contact stays closed has modes; one that opens must be a rectangle on springs
     features.refuse_column(scene, "advise")
     is_known = scene.block.rectangle is not None and math.isfinite(scene.contact.stiffness)
     if scene.contact.law == "unilateral" and not is_known:
@@ -146,7 +146,7 @@ def advise_across(
     return replace(answer, sentence=_sentence(answer))
 
 
-# ---- candidates -----------------------------------------------------------------------------------------------------
+# ---- candidates ----
 
 
 def _candidates(scene: Scene, target: float, omega: float) -> tuple[list[Stepping], dict[str, float]]:
@@ -212,18 +212,16 @@ def _root(ratio: Callable[[float], float], target: float, low: float, high: floa
 
 
 def _named(stepping: Stepping) -> str:
-    """Name a scheme with its numbers."""
     name = say("newmark" if stepping.scheme == "newmark" else "of one number", stepping)
     return name if stepping.gg == 1 else say("with gg", stepping, name=name)
 
 
-# ---- one offer ------------------------------------------------------------------------------------------------------
+# ---- one offer ----
 
 
 def _offer(
     scene: Scene, omega: float, modes: tuple[Mode, ...], highest: float, impact: float, stepping: Stepping
 ) -> Offer:
-    """Return a scheme at its step with all that follows from it."""
     dt = stepping.step
     present = Stepping.of(scene)
     settings: dict[str, Any] = {"time.step": dt, "time.gg": stepping.gg}
@@ -276,7 +274,6 @@ def rebound_of(stages: Stages, omega: float) -> ReboundStatistics:
 
 
 def _sentence(advice: SchemeAdvice) -> str:
-    """Return the answer in one sentence."""
     wish = say("wish without gain" if advice.no_gain else "wish", advice)
     fitting = [offer for offer in advice.offers if not (advice.no_gain and offer.gains)]
     if not fitting:

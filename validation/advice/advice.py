@@ -43,9 +43,7 @@ class Solution:
 
     value: float  # dt [s], gg [1] or delta [1]
     damping: float  # xi of the first axial mode there [1]
-    settling_steps: (
-        int | None
-    )  # displacement within 1 % of static under the scene's loads for ever after; None if never
+    settling_steps: int | None  # until displacement stays within 1 % of static under the scene's loads; None if never
     settling_seconds: float | None  # the same [s]
     settling_from: str  # "history", "envelope" where the history would be too long, or `NO_STATIC`
     alpha: float  # weight of the new acceleration in the displacement [1]
@@ -286,11 +284,10 @@ def _settling(case: Scene) -> tuple[int | None, str]:
     return (int(step) if isinstance(step, float) else None), "history"
 
 
-# ---- the sentence -------------------------------------------------------------------------------------------------
+# ---- the sentence ----
 
 
 def _sentence(scene: Scene, answer: Advice) -> str:
-    """Return the answer in one sentence: what to set, and what follows from it."""
     kind = KINDS[answer.solve_for]
     solutions = answer.solutions
     if not solutions:
@@ -316,7 +313,6 @@ def _sentence(scene: Scene, answer: Advice) -> str:
         last, contact = flips[-1]
         at = "" if len(flips) == len(solutions) else f" at {_answer(last)}"
         text += f", but the contact mode {runs(contact)}{at}"
-    # which settings are fixed, where it matters
     first = solutions[0]
     if "time.gg" in first.settings:
         text += say("valid gg", first, left=left_of_a_distance(first.value, first.step))

@@ -1,7 +1,4 @@
-"""Alarms: results that look better than they are.
-
-fixed discount
-    dt is refined at a fixed gg < 1, which acts per step: the answers do not converge.
+"""Alarms: results that look better than they are. Their sentences are in `alarms.toml`.
 
 Those of a step that is too long for the motion are in `validation.advice.coarse`; a kind of scene brings those of its
 contacts: `.block_alarms`, and `.columns` of columns whose contacts open or slip.

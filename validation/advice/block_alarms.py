@@ -1,9 +1,4 @@
-"""The alarms of a block.
-
-hidden tension
-    A locked contact carries tension; a real one would open.
-contact ringing
-    A root of the contact mode lies next to -1: it flips sign every step and hardly decays.
+"""The alarms of a block: tension of a locked contact, and a contact mode that rings.
 
 That of a start that puts energy in is in `validation.advice.overshoot`, those of contact that opens in
 `.contact_alarms`, those of friction in `.friction`.
@@ -29,7 +24,7 @@ RINGING = "contact ringing"
 
 def block_alarms(scene: Scene, rows: RowsBySolver) -> Iterator[Alarm]:
     """Yield the alarms of a block from its finished rows by solver."""
-    # One alarm for the solvers whose contact carries tension; runs that repeat another are not listed.
+    # one alarm for all solvers whose contact carries tension
     values: dict[str, float] = {}
     parts = []
     for solver, row in rows.items():

@@ -1,14 +1,8 @@
 """Alarms of a step that is too long for the motion, from the scheme's roots alone: no solver is run for them.
 
-agreement by damping
-    The scheme takes a third of the first mode, or of the wave that drives a column, within one period. Programs that
-    take the same steps agree because both are damped alike.
-fewer than two steps per period
-    The first mode turns by more than pi in a step: no history shows it, whatever the scheme.
-
-What the discount and damping tables take is meant, and counts for neither; where they take as much in a period,
-the motion is to come to rest, and there is nothing to warn of. A block that slides or turns as a whole is left to the
-alarms of friction and landings.
+Programs that take the same steps agree because both are damped alike. What the discount and damping tables take is
+meant, and counts for nothing; where they take as much in a period, the motion is to come to rest, and there is nothing
+to warn of. A block that slides or turns as a whole is left to the alarms of friction and landings.
 """
 
 from __future__ import annotations
@@ -39,34 +33,18 @@ TURNS = 50  # of w dt between which that step is looked for
 
 @dataclass(frozen=True)
 class Removal:
-    """What a step leaves of a motion.
+    """What a step leaves of a motion."""
 
-    Attributes
-    ----------
-    omega_dt
-        w dt [1].
-    by_scheme
-        Share of the amplitude that the scheme takes within a period, or within the run where that is shorter [1].
-    by_damping
-        The same of discount and damping tables [1].
-    """
-
-    omega_dt: float
-    by_scheme: float
-    by_damping: float
+    omega_dt: float  # w dt [1]
+    by_scheme: float  # share of the amplitude that the scheme takes in a period, or in a shorter run [1]
+    by_damping: float  # the same of discount and damping tables [1]
 
 
 def coarse_alarms(scene: Scene, frequency: float | None = None, agreement: Callable[[], str] = str) -> Iterator[Alarm]:
     """Yield the alarms of a step that is too long for what a scene's motion is made of, of its slowest part only.
 
-    Parameters
-    ----------
-    scene
-        A case.
-    frequency
-        Of the first mode as a run has it [rad/s]; looked for if absent.
-    agreement
-        Says which programs agree, and how well; called where there is an alarm.
+    `frequency` is that of the first mode as a run has it [rad/s], looked for if absent; `agreement` says which programs
+    agree, and how well, and is called where there is an alarm.
     """
     for motion in AdviceHooks.of(scene).motions(scene, frequency):
         removal = removal_of(scene, motion.frequency)

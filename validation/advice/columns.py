@@ -1,16 +1,7 @@
 """Columns whose contacts open or slip: what is known before a step is made, and the alarms of such scenes.
 
-solve limit
-    The open-close iteration is ended before the solves that the contacts can need: a stack that touches is never solved
-    by cutting the step.
-far face moves the wrong way
-    The step is so short that a push at the foot of a block of one strain opens the contact above it at once, before
-    any wave arrives there.
-gain by switching
-    Average acceleration without discount, before a run: a contact that opens may gain energy, and a stack does not come
-    to rest. After a run what it has gained is told, as "energy gained by switching".
-residual slip by the step
-    Algorithmic or kinetic damping changes what slips, and what has slipped stays.
+That average acceleration without discount may gain energy by switching is told before a run; after it what it has
+gained is, as "energy gained by switching".
 """
 
 from __future__ import annotations
@@ -162,10 +153,7 @@ def advised(scene: Scene, bound: ColumnLimits, resting: Rest | None = None) -> I
 def column_alarms(scene: Scene, row: Row | None = None) -> Iterator[Alarm]:
     """Yield the alarms of a scene with a column whose contacts open or slip.
 
-    Parameters
-    ----------
-    row
-        Of the judged method's run; without one, what may happen is told.
+    `row` is of the judged method's run; without one, what may happen is told.
     """
     column = scene.table(ColumnSection)
     bound = limits(scene)

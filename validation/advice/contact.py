@@ -56,22 +56,11 @@ def restitution(scene: Scene) -> landing.SteppedLanding | None:
 def needed(
     scene: Scene, speed: float, penetration: float, probe: Callable[[float], float | None] | None = None
 ) -> Needed:
-    """Return springs for a penetration.
+    """Return springs for a penetration x [m] of a base that lands at the speed V [m/s] at most.
 
     p = max(W / (2 x), D^2 V^2 m / (8 x^2)) holds the load at rest and one unloaded landing, D = 1.47 to 2 by p itself.
     Load and strain at the landing go deeper still, so p is raised, as the square of the depth, until the exact block
-    stays above x.
-
-    Parameters
-    ----------
-    scene
-        The scene.
-    speed
-        Greatest speed V at which the base lands [m/s].
-    penetration
-        Penetration x [m].
-    probe
-        Function of p that returns how deep the exact block goes [m], None where there is no answer.
+    stays above x. `probe` returns how deep that goes on springs p [m], None where there is no answer.
     """
     static = abs(opened.resultant_load(scene)) / (2 * penetration)
     landed = landing.springs_for(scene, speed, penetration) if speed else 0.0

@@ -1,21 +1,4 @@
-"""Alarms of contact that opens.
-
-step too large for contact
-    The step changes the restitution of a landing by more than a tenth; arbitrary where it is the phase that decides.
-energy gained by switching
-    Opening and closing have put energy into the block; under a scheme that remembers its acceleration, all that the
-    scheme did.
-energy may be gained
-    delta < 1 or 2 alpha < delta, with w_c dt > 1: nothing keeps opening and closing from putting energy in.
-hidden opening
-    The step is too long to see that the block leaves its springs.
-peak force of the penalty
-    The peak of the contact force is that of the springs, which grows as sqrt(p), not that of the body.
-drag in flight
-    gg < 1 brakes the block in the air as well.
-tension of a dead band
-    The band lets a contact that carries no tension pull with more than 1 % of the load.
-"""
+"""Alarms of contact that opens."""
 
 from __future__ import annotations
 
@@ -47,15 +30,7 @@ BEYOND = 1.5  # times the peak force of the exact bar from which on a peak is th
 
 
 def contact_alarms(scene: Scene, rows: RowsBySolver) -> Iterator[Alarm]:
-    """Yield the alarms of the judged method's run of a scene with unilateral contact.
-
-    Parameters
-    ----------
-    scene
-        The scene.
-    rows
-        Its finished rows by solver.
-    """
+    """Yield the alarms of the judged method's run of a scene with unilateral contact, by its finished rows."""
     row = first_row(rows, Role.JUDGED)
     if row is None or features.UNILATERAL not in features.of(scene):
         return
@@ -74,7 +49,7 @@ def contact_alarms(scene: Scene, rows: RowsBySolver) -> Iterator[Alarm]:
     limit = landing.hidden_from(scene)
     if limit is not None and scene.time.step > limit:
         yield alarm(HIDDEN, scene.name, {"step": scene.time.step, "limit": limit})
-    # A peak that is that of the springs, not of the body: beyond the exact bar's, on springs stiffer than a wave.
+    # a peak of the springs, not of the body: beyond the exact bar's, on springs stiffer than a wave
     peak = number(row, "contact.peak_force") or 0.0
     exact = number(first_row(rows, Role.TRUTH), "contact.peak_force")
     quarter = landing.quarter_mass_force(scene, 1.0)

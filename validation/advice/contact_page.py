@@ -62,11 +62,6 @@ def elements() -> str:
 def scenes(scene: Scene, bound: ColumnLimits | None = None) -> dict[str, Scene]:
     """Return the scene that each solver runs: the exact motions have no kinetic damping.
 
-    Parameters
-    ----------
-    bound
-        What is known of a column whose contacts open or slip.
-
     Raises
     ------
     InputError
@@ -100,19 +95,9 @@ def answer(
 ) -> dict[str, Any]:
     """Return everything as plain data.
 
-    Parameters
-    ----------
-    scene
-        The scene.
-    rows
-        Its rows by solver, without the solvers that do not apply.
-    penetration
-        The requested penetration [m]; None where the user requests none: then `DEFAULT_PENETRATION`, but no advice on
-        landings to a block that slides.
-    probe
-        How deep the exact block goes on springs p [m], None where there is no answer.
-    bound
-        What is known of a column.
+    `rows` leave out the solvers that do not apply. Without a requested penetration [m] it is `DEFAULT_PENETRATION`, and
+    a block that slides gets no advice on landings. `probe` returns how deep the exact block goes on springs p [m], None
+    where there is no answer.
     """
     prefixes = ("switches.", "contact.", "energy.", "horizon.", ALONG)
     runs = {}

@@ -35,14 +35,9 @@ LIMITS = {  # of the numbers that may be no arbitrary positive ones
 
 
 def draft(options: Mapping[str, Any], ask: Callable[[str, float], float]) -> str:
-    """Return the text of a scene file.
+    """Return the text of a scene file; `ask` returns the answer to a question, given its default.
 
-    Parameters
-    ----------
-    options
-        `kind` and `rock` by name, block and granite if absent, and numbers by the names of the kind's questions.
-    ask
-        Returns the answer to a question, given its default.
+    `options` are `kind` and `rock`, block and granite if absent, and numbers by the names of the kind's questions.
 
     Raises
     ------
@@ -78,7 +73,6 @@ def draft(options: Mapping[str, Any], ask: Callable[[str, float], float]) -> str
 
 
 def _derived(kind: str, numbers: Mapping[str, float], material: Mapping[str, float]) -> dict[str, Any]:
-    """Return what follows of size and material: springs, blocks and steps."""
     young = material["young"]
     density = material["density"]
     width = numbers.get("width", 0.0)

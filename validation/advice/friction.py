@@ -1,17 +1,8 @@
 """What friction, slope and a discount make of a block's displacement, and the alarms of blocks that slip.
 
-creep of a stable block
-    A block below its threshold slips on, long after it should stand.
-lagged friction
-    The friction of a slipping corner is that of the pass before: a stable block may creep, the faster the finer the
-    step (at 20 degrees under 30, 0.8 mm in a second at 1 ms and 6.1 mm at 0.2 ms; at 5 degrees hardly).
-slip hidden by the step
-    The step is too long for the ringing that may move the exact block: it stands because it is damped. Not told where
-    shear springs are as stiff as normal ones and the slope is gentle: there the exact block stands as well.
-no contact state
-    No states of stick and slip agree with the motion, or several do.
-drag on a sliding block
-    gg < 1 brakes a block that slides as it brakes one in the air.
+Lagged friction lets a stable block creep the faster the finer the step: at 20 degrees under 30 by 0.8 mm in a second at
+1 ms and by 6.1 mm at 0.2 ms, at 5 degrees hardly. That a step hides slip is not told where shear springs are as stiff
+as normal ones and the slope is gentle: there the exact block stands as well.
 """
 
 from __future__ import annotations
@@ -137,14 +128,14 @@ def friction_alarms(scene: Scene, rows: RowsBySolver) -> Iterator[Alarm]:
             values = {**rate, "run_out": slides.run_out, "braked": slides.braked}
             yield alarm(BRAKES, scene.name, values, gg=t.discount, drag=slides.drag)
         return
-    # Slip that goes on after friction has had the time to stop a speed of g / w_n.
+    # slip that goes on after friction has had the time to stop a speed of g / w_n
     rate_of_slip = number(row, "contact.slip_rate") or 0.0
     stopped = STOPPING * slides.creep / -slides.acceleration if slides.acceleration < 0 else math.inf
     if rate_of_slip > SLOW * slides.creep > 0 and t.duration / 2 > stopped:
         values = {"rate": rate_of_slip, "scale": slides.creep}
         words = {"slope": abs(scene.load.slope), "speed": 1e3 * rate_of_slip, "share": rate_of_slip / slides.creep}
         yield alarm(CREEPS, scene.name, values, slides=slides, **words)
-    # A slope that stands because its ringing is not followed.
+    # a slope that stands because its ringing is not followed
     phase = friction.normal_frequency(scene) * t.step
     is_hidden = phase > COARSE and slides.creep > 0 and not slides.rings_alike
     if scene.load.slope and is_hidden and (Stepping.of(scene).damps or t.discount < 1):

@@ -5,8 +5,8 @@ static
     within a hundredth of their limits. What remains is the model's: its static displacement against that of elements.
     A block that slides has no rest: its own motion is judged by the distance of a rigid block.
 wave, quake
-    The base moves as Ricker's wavelet of a frequency, upwards, of a quake sideways as well. A candidate is judged by
-    its history against that of elements under average acceleration with a finer step.
+    The base moves as Ricker's wavelet, upwards, of a quake sideways as well. A candidate is judged by its history
+    against that of elements under average acceleration with a finer step.
 impact
     The block lands flat and without load, at four places of a step. A candidate is judged by the worst of them, by its
     history and its restitution against `block-events`, which is exact in time.
@@ -135,8 +135,8 @@ class Trials:
     def longest_step(self, coarsest: int, error: float) -> Candidate:
         """Return the candidate with the longest step that keeps the error and keeps it at half that step too.
 
-        An error of the step and one of the blocks may cancel at one step and at no other. `coarsest` is the multiple to
-        begin with, a power of two.
+        An error of the step and one of the blocks may cancel at one step only. `coarsest`, a power of two, is the
+        multiple to begin with.
         """
         candidate = self.candidate(coarsest)
         while coarsest > 1:
@@ -149,10 +149,9 @@ class Trials:
 
 
 def yielding(scene: Scene, stiffness: float) -> float:
-    """Return what springs p give way by, over what the block shortens down to its centroid: E a / (p h) [-].
+    """Return F / (2 p), what springs p give way by, over F h / (2 E a), what the block shortens to its centroid [-].
 
-    Under a force F the springs give way by F / (2 p), and the block of one strain by F h / (2 E a) at its centroid. Of
-    a share it returns the p [N/m].
+    Of a share it returns the p [N/m].
     """
     modulus, _ = statics.moduli(scene)
     return modulus * scene.block.base_length / (statics.height(scene) * stiffness)
@@ -160,13 +159,7 @@ def yielding(scene: Scene, stiffness: float) -> float:
 
 @dataclass(frozen=True)
 class Question:
-    """What is asked of a scene.
-
-    Raises
-    ------
-    InputError
-        A goal, an error or a frequency is none, by the options of the command line.
-    """
+    """What is asked of a scene; raises InputError by the options of the command line for what is none."""
 
     source: str = ""  # the words of the scene on a command line
     error: float = ERROR  # of displacement and contact force, that is allowed [-]
@@ -176,7 +169,6 @@ class Question:
     progress: Progress = lambda *_: None  # is told what has been done, of how much, what is next
 
     def __post_init__(self) -> None:
-        """Refuse what is none."""
         for goal in self.goals:
             check_choice("--goal", goal, GOALS)
         Limit("--error", "must be above 0 and below 1", below=1.0).check(self.error)
@@ -192,16 +184,9 @@ class Question:
 
 
 def recommend(scene: Scene, goal: str, question: Question) -> tuple[Recommendation, ...]:
-    """Return what a block should be run with for a goal; of an impact also with energy-conserving contact.
+    """Return what a block, in a scene without a sweep, should be run with for one of `GOALS`.
 
-    Parameters
-    ----------
-    scene
-        A scene of a block, without a sweep.
-    goal
-        One of `GOALS`.
-    question
-        Error, frequency, and whether springs stay.
+    Of an impact it returns settings with energy-conserving contact as well.
 
     Raises
     ------
@@ -225,7 +210,7 @@ def recommend(scene: Scene, goal: str, question: Question) -> tuple[Recommendati
     slides = sliding(scene)
     if slides is None or slides.stands:
         return (_static(sprung, block, error),)
-    # The longest step with which a block slides as far as a rigid one, on its own springs.
+    # the longest step with which a block slides as far as a rigid one, on its own springs
     duration = min(scene.time.duration, LONGEST_SLIDE * scene.time.step)
     plain = scene.with_values(CONSTANT | {"run.columns": [ALONG, DISPLACEMENT, PRESSURE]})
     trials = Trials(
@@ -238,20 +223,13 @@ def recommend(scene: Scene, goal: str, question: Question) -> tuple[Recommendati
     return (recommendation(plain, "slide", say("slide condition"), best, error, (RIGID_BLOCK, 0.0), duration),)
 
 
-# ---- static ---------------------------------------------------------------------------------------------------------
+# ---- static ----
 
 
 def _static(scene: Scene, block: Scene, error: float) -> Recommendation:
     """Return the rows and the step with which a block comes to rest in the fewest steps.
 
-    Parameters
-    ----------
-    scene
-        With the contact as it is stated, which may open on the way.
-    block
-        The same with closed contact, which has static values.
-    error
-        Requested.
+    The contact of `scene` may open on the way; that of `block` is closed, so that there are static values.
     """
     if block.load.base_motion is not None or not get_solver(own()).static(block)[DISPLACEMENT]:
         raise _refusal("needs a load with a static answer", block, "static")
@@ -298,7 +276,7 @@ def slide_errors(scene: Scene) -> Errors:
     return abs(distance - 1), abs(float(np.mean(history.columns[PRESSURE])) / pressure - 1)
 
 
-# ---- wave and quake -------------------------------------------------------------------------------------------------
+# ---- wave and quake ----
 
 
 def _driven(block: Scene, goal: str, error: float, frequency: float) -> Recommendation:
@@ -307,7 +285,7 @@ def _driven(block: Scene, goal: str, error: float, frequency: float) -> Recommen
     axes = AXES[goal]
     with tempfile.TemporaryDirectory() as folder:
         record = Path(folder) / "wavelet.csv"
-        # Write Ricker's wavelet (1 - 2 a^2) exp(-a^2), a = pi f (t - t0), as a record of the base.
+        # Ricker's wavelet (1 - 2 a^2) exp(-a^2), a = pi f (t - t0), as a record of the base
         times = np.arange(round(duration / finest) + 2) * finest
         a = (np.pi * (frequency * times - ONSET)) ** 2
         motion = AMPLITUDE * (1 - 2 * a) * np.exp(-a)
@@ -326,7 +304,7 @@ def _driven(block: Scene, goal: str, error: float, frequency: float) -> Recommen
                 return None
             return difference(history, exact, DISPLACEMENT, every), difference(history, exact, PRESSURE, every)
 
-        # The fewest steps times blocks that keep the error, or the least error.
+        # the fewest steps times blocks that keep the error, or the least error
         tried: list[Candidate] = []
         good: list[Candidate] = []
         for cut in _cuts(driven):
@@ -345,7 +323,7 @@ def _driven(block: Scene, goal: str, error: float, frequency: float) -> Recommen
         return recommendation(driven, goal, condition, best, error, reference, duration)
 
 
-# ---- impact ---------------------------------------------------------------------------------------------------------
+# ---- impact ----
 
 
 def _impacts(block: Scene, error: float, own_speed: float) -> tuple[Recommendation, ...]:
@@ -366,7 +344,7 @@ def _impacts(block: Scene, error: float, own_speed: float) -> tuple[Recommendati
     flight = np.concatenate([[0.0], exact.columns[DISPLACEMENT]])  # from the landing on
 
     def errors(settings: dict[str, Any], every: int, steps: int) -> Errors:
-        """Return the errors of displacement and restitution, the worst of all phases of the first step."""
+        """Return the worst errors of displacement and restitution over all phases of the first step."""
         step = settings["time.step"]
         worst = np.zeros(2)
         for phase in PHASES:
@@ -395,7 +373,7 @@ def _impacts(block: Scene, error: float, own_speed: float) -> tuple[Recommendati
     return tuple(offers)
 
 
-# ---- what all share -------------------------------------------------------------------------------------------------
+# ---- what all share ----
 
 
 def _cuts(scene: Scene) -> list[dict[str, Any]]:
@@ -461,7 +439,7 @@ def recommendation(
 def estimated_seconds(scene: Scene, solver: str, steps: int) -> float | None:
     """Return about how long some steps of a solver take, with their set-up [s]; None where it does not apply.
 
-    Many steps are not run: two short runs are timed, of which the longer has four times the steps of the shorter.
+    Many steps are estimated from two short runs, of which the longer has four times the steps of the shorter.
     """
     if get_solver(solver).refusal(scene):
         return None

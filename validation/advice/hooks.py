@@ -81,13 +81,7 @@ class AdviceHooks(Hooks):
         return None
 
     def layers(self, scene: Scene) -> tuple[Layer, ...]:
-        """Return the layers that a wave runs through, from below.
-
-        Raises
-        ------
-        InputError
-            No wave runs through such a scene.
-        """
+        """Return the layers that a wave runs through, from below, or raise InputError where none does."""
         raise InputError("is needed for what is asked", source=scene.name, field="block", value=scene.kind_in_words)
 
     def cut(self, scene: Scene, counts: Sequence[int]) -> Scene:

@@ -24,39 +24,21 @@ class Limit:
     advice: str | None = None
 
     def check(self, value: float | None) -> None:
-        """Refuse a number out of the interval; NaN lies in none. What is not stated is not looked at.
-
-        Raises
-        ------
-        InputError
-            With the rule.
-        """
+        """Raise InputError with the rule for a number out of the interval or NaN; None is not looked at."""
         if value is None or self.above < value < self.below or value in self.ends:
             return
         raise InputError(self.rule, field=self.field, value=stated_text(value), advice=self.advice)
 
 
 def check_ratio(damping: float, least: float) -> None:
-    """Refuse a target damping ratio out of `least` to `LARGEST_RATIO`.
-
-    Raises
-    ------
-    InputError
-        With the rule.
-    """
+    """Raise InputError for a target damping ratio out of `least` to `LARGEST_RATIO`."""
     advice = f"{damping:g} % is {damping / 100:g}" if damping > LARGEST_RATIO else None
     rule = f"must be a damping ratio from {least:g} to {LARGEST_RATIO:g}, where 1 is critical"
     Limit("damping", rule, least, LARGEST_RATIO, (least, LARGEST_RATIO), advice).check(damping)
 
 
 def check_choice(field: str, value: str, choices: Iterable[str]) -> None:
-    """Refuse a word that is none of some choices.
-
-    Raises
-    ------
-    InputError
-        With the choices.
-    """
+    """Raise InputError, with the choices, for a word that is none of them."""
     listed = list(choices)
     if value not in listed:
         raise InputError(f"must be one of {', '.join(listed)}", field=field, value=repr(value))

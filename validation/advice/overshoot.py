@@ -1,9 +1,4 @@
-"""The alarm of a start that puts energy in.
-
-overshoot of the start
-    A load that comes on at once, a consistent start and a scheme that remembers its acceleration: the first step raises
-    the energy by more than 1 % of what the load gives, whatever the contact does later.
-"""
+"""The alarm of a start that puts energy in, whatever the contact does later."""
 
 from __future__ import annotations
 

@@ -79,10 +79,7 @@ class Overview(PlainAnswer):
 def overview(scene: Scene, question: Question) -> Overview:
     """Return what the settings of a block do, and what to take for goals.
 
-    Raises
-    ------
-    InputError
-        The scene is of no block, or has a sweep.
+    Raises InputError for a scene of no block or with a sweep.
     """
     features.refuse_sweep(scene)
     features.refuse_column(scene, "advise")
@@ -161,7 +158,7 @@ def _present_error(scene: Scene) -> PresentError | None:
     return PresentError(name, steps * case.time.step, *errors)
 
 
-# ---- in words -------------------------------------------------------------------------------------------------------
+# ---- in words ----
 
 
 def lines(scene: Scene, question: Question, answer: Overview) -> Iterator[str]:

@@ -20,13 +20,7 @@ class PageHooks(Hooks):
     module = "pages"
 
     def page(self, scene: Scene, question: Question) -> Page:
-        """Return the page on a scene without a sweep.
-
-        Raises
-        ------
-        InputError
-            Nothing is known of such a scene.
-        """
+        """Return the page on a scene without a sweep, or raise InputError where nothing is known of such a scene."""
         raise InputError("advise takes scenes of a block only", source=scene.name, value=scene.kind_in_words)
 
 

@@ -40,19 +40,9 @@ def in_rows(
 ) -> list[list[str]]:
     """Return the rows of a table, a list of lines each, with their columns aligned.
 
-    The last column is as long as it likes, or wrapped to a width: beside the others, or, where there is no room, below
-    the columns that the width has room for, with those that it has none for.
-
-    Parameters
-    ----------
-    lines
-        The cells of each row; no cells are an empty line.
-    width
-        Characters of a line; None where lines are not broken.
-    indent
-        What each line begins with.
-    right
-        Which columns end, and do not begin, below one another.
+    The last column is as long as it likes, or wrapped to a line of `width` characters: beside the others, or, where
+    there is no room, below the columns that the width has room for, with those that it has none for. Each line begins
+    with `indent`; the columns `right` end, and do not begin, below one another.
     """
     columns = [*zip(*filter(None, lines), strict=True)]
     widths = [max(map(len, column)) for column in columns]

@@ -81,7 +81,7 @@ class Response:
         """
         values = self.columns[column]
         size = np.abs(values)
-        # without damping amplitudes are real: a change of sign may hide a resonance of which neither end is a maximum
+        # without damping a change of sign may hide a resonance of which neither end is a maximum
         is_pole = _are_real(values[:-1]) & _are_real(values[1:]) & (values.real[:-1] * values.real[1:] < 0)
         local = 1 + np.flatnonzero((size[1:-1] > size[:-2]) & (size[1:-1] >= size[2:]))
         brackets = [*zip(local - 1, local + 1, strict=True), *((i, i + 1) for i in np.flatnonzero(is_pole))]
@@ -134,15 +134,15 @@ def polar(amplitude: Complex) -> ArrayPair:
 def response(scene: Scene, frequencies: ArrayLike, solver: str | Solver, exact: bool = False) -> Response:
     """Return the frequency response of a linear scene.
 
-    A load F e^{iwt} that is taken at the steps meets the stepped system as the system that is exact in time at a
-    complex squared frequency: (K - W2 M) D = F. Nothing is stepped.
+    With the scheme's complex squared frequency W2 (`validation.theory.stepping`) it solves (K - W2 M) D = F; nothing is
+    stepped.
 
     Parameters
     ----------
     scene
         A scene without a sweep; its loads vibrate in phase, with the amplitudes that it gives them. Where its base
-        moves, the response is that to the base alone, per metre along its direction. A column answers per metre of its
-        base, or of the wave that comes up through a transmitting base, or under the pressure on its top.
+        moves, the response is to that alone, per metre along its direction. A column answers per metre of its base or
+        of the wave that comes up through a transmitting base, or under the pressure on its top.
     frequencies
         Frequencies f [Hz], not negative. Above 1 / (2 dt), half the sampling frequency, the steps see a load's alias.
     solver

@@ -2,8 +2,7 @@
 
 The scheme's closed forms (trace and determinant of one step, `dda.scheme.spectral`; of schemes other than Newmark's the
 roots of `validation.theory.stepping`) are evaluated at the frequencies of the DDA block. The total damping ratio xi is
-that of the scheme with its discount gg; the algorithmic part is that of the same scheme at gg = 1; the kinetic part is
-the rest.
+that of the scheme with its discount gg, the algorithmic part that of it at gg = 1, the kinetic part the rest.
 """
 
 from __future__ import annotations
@@ -156,13 +155,7 @@ def dda_modes(scene: Scene) -> tuple[Mode, ...]:
 
 
 def checked(solver: str, scene: Scene) -> Solver:
-    """Return a solver whose model of the scene fits into memory; no step is taken for its modes.
-
-    Raises
-    ------
-    InputError
-        It does not fit.
-    """
+    """Return a solver whose model of the scene fits into memory, or raise InputError; its modes take no step."""
     chosen = get_solver(solver)
     memory.check(scene.with_values({"time.steps": 1}), chosen)
     return chosen
@@ -171,7 +164,7 @@ def checked(solver: str, scene: Scene) -> Solver:
 def stable_step(scene: Scene) -> float:
     """Return the largest stable step of the scene as DDA's solver judges it [s]; infinite where every step is stable.
 
-    The critical w dt of the scheme over the highest natural frequency of the solver's own model, with its contact
+    It is the critical w dt of the scheme over the highest natural frequency of the solver's own model, with its contact
     springs, glue and joints: a spring between two blocks can be far faster than the blocks.
 
     Raises
@@ -184,13 +177,7 @@ def stable_step(scene: Scene) -> float:
 
 
 def highest_frequency(scene: Scene) -> float:
-    """Return the highest natural frequency of DDA's model of the scene [rad/s].
-
-    Raises
-    ------
-    InputError
-        DDA refuses the scene, or its model does not fit into memory.
-    """
+    """Return the highest natural frequency of DDA's model of the scene [rad/s], refused as in `stable_step`."""
     frequency = checked("dda", scene).prepare(scene).highest_frequency()
     if frequency is None:
         raise NotReported("dda reports no limit of the step")
@@ -261,7 +248,7 @@ def first_mode(scene: Scene, solver: str) -> dict[str, float | None]:
     return {"frequency": mode.frequency, "damping": xi if isinstance(xi, float) else None}
 
 
-# ---- sentences ----------------------------------------------------------------------------------------------------
+# ---- sentences ----
 
 
 def runs(mode: ModeDamping) -> str:

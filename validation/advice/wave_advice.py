@@ -99,7 +99,7 @@ class _WavePath:
     def passage(self, stepping: Stepping) -> Passage:
         w2 = stepping.squared_frequency([self.omega])
         loss, delay = self.passed(w2)
-        # The damping ratio xi = -Im W / |W| of a vibration that a load keeps up.
+        # the damping ratio of a vibration that a load keeps up
         W = np.sqrt(w2[0])
         values = (loss[0], delay[0], float(-W.imag / np.abs(W)))
         rounded = (0.0 if abs(value) < ROUNDING else float(value) for value in values)
@@ -145,7 +145,7 @@ def advise_wave(
     for limit, value in zip(LIMITS, (frequency, wavelengths, loss, phase_error), strict=True):
         limit.check(value)
     check_scene(scene)
-    # Beyond half the sampling rate the steps see an alias, a lower frequency.
+    # beyond half the sampling rate the steps see an alias
     step = scene.time.step
     beyond = say("alias of a wave", limit=0.5 / step, step=step)
     cure = "take a lower frequency or a smaller step"
@@ -271,7 +271,6 @@ def _largest_step(scene: Scene, path: _WavePath, loss: float, allowed: float) ->
 
 
 def _sentence(scene: Scene, advice: WaveAdvice) -> str:
-    """Say what the present blocks and step do to the wave."""
     kinetic, algorithmic = Stepping.of(scene).rayleigh()
     kind = "algorithmic and kinetic"
     if kinetic == 0:
@@ -283,7 +282,6 @@ def _sentence(scene: Scene, advice: WaveAdvice) -> str:
 
 
 def _advised(scene: Scene, advice: WaveAdvice, largest: _LargestStep) -> str:
-    """Say what is advised and what limits it, or why nothing is."""
     if advice.advised is not None:
         heights = ", ".join(f"{h:.4g}" for h in advice.advised.heights)
         return say("advised wave", advice, heights=heights, late=_late(advice.advised))

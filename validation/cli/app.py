@@ -181,13 +181,7 @@ def print_warnings(scene: Scene) -> None:
 
 
 def refuse_bad_input(scene: str, solver: str, ended: Run | Row) -> None:
-    """Refuse as bad input what a solver refused or does not apply to; what else a run ended in is left alone.
-
-    Raises
-    ------
-    InputError
-        With the solver's own reason.
-    """
+    """Raise InputError, with its reason, for what a solver refused or does not apply to; other ends are left alone."""
     from validation.errors import InputError
     from validation.runs.run import Outcome
 

@@ -81,7 +81,6 @@ def compare(
 
 
 def _listed(alternative: dict[str, Any]) -> str:
-    """Return causes with their numbers."""
     values = alternative["values"]
     return " and ".join(f"{name} {values[name]:.5g}" if name in values else name for name in alternative["causes"])
 

@@ -101,8 +101,8 @@ def judge(
     pile, heavy-top, toppling, shaken, impact, and their cases. They and a folder to fill in come with dda-validate
     export-pack. A column passes where its error is below what one per cent of the problem's data changes. PARTIAL: the
     columns that it reports pass, others that the problem asks for are withheld. Stale: it answers an earlier pack, in
-    which the problem was another. What is wrong with files is listed with file, line and character. Exit status: 0 all
-    passes, 1 something does not or in part only, 2 bad input, 3 a run ended in a named failure.
+    which the problem was another. What is wrong with files is listed: file and field, in tables line and character.
+    Exit status: 0 all passes, 1 something does not or in part only, 2 bad input, 3 a run ended in a named failure.
 
     Example: [bold]dda-validate judge my_solver:solve locked[/bold] or [bold]dda-validate judge answers/[/bold]
     """
@@ -301,17 +301,11 @@ def all_defects() -> Iterator[None]:
         raise typer.Exit(BAD_INPUT) from None
 
 
-# ---- gates ----------------------------------------------------------------------------------------------------------
+# ---- gates ----
 
 
 def check_loads(source: str) -> None:
-    """Refuse a solver that cannot be loaded, before anything is run with it.
-
-    Raises
-    ------
-    InputError
-        There is no such solver, or its module raises.
-    """
+    """Raise InputError for a solver that cannot be loaded, before anything is run with it."""
     from validation.solvers.registry import get_solver
     from validation.solvers.user import UserSolver
 

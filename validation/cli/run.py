@@ -195,17 +195,7 @@ def answer_and_exit(
     judging: Judging,
     before: list[BaselineVerdict] | None,
 ) -> NoReturn:
-    """Print what studies have shown, and exit with the status of a run.
-
-    Parameters
-    ----------
-    runs, seconds
-        The studies as they were judged, and the seconds that each took.
-    results
-        Where their rows and verdicts are.
-    judging, before
-        The options, and the verdicts of the baseline.
-    """
+    """Print what studies have shown, and exit with the status of a run; `before` are the baseline's verdicts."""
     from validation.cli.printing.answer import RunAnswer, as_data
     from validation.cli.printing.output import tolerate_closed_pipe
     from validation.cli.printing.tables import after_run

@@ -45,7 +45,6 @@ def response(
     from validation.runs.files import check_ending
 
     case = one_case(scene, assignments)
-    # The frequencies of a sweep [Hz], or refuse its ends.
     import numpy as np
 
     from validation.errors import InputError
@@ -61,7 +60,6 @@ def response(
     check_ending(figure, "--figure")
     answers = {solver: answer(case, frequencies, solver), EXACT: answer(case, frequencies, solver, exact=True)}
     if csv is not None:
-        # Write the table with all digits.
         response = answers[EXACT if exact else solver]
         from validation.advice.response import HEADER
         from validation.runs.files import csv_text, write_text

@@ -1,6 +1,3 @@
-"""Another program's history, judged against a scene.
-
-Reading, fitting, naming causes, and the sentences that say so.
-"""
+"""Another program's history, judged against a scene: reading, fitting, naming causes, and saying so in sentences."""
 
 from validation.diagnosis.judgement import compare as compare

@@ -38,8 +38,8 @@ class Answer:
     pressures: dict[str, Array] = field(default_factory=dict)  # name to pressure at the times of `curves` [Pa]
     slips: tuple[Slip, ...] = ()  # of sign and unit, column by column
     intervals: dict[str, tuple[float, float]] = field(default_factory=dict)  # of `values`, 95 %
-    remedy: str = ""  # the options by which the history is read without `slips`, or with its columns in their places
-    model: str = ""  # the solver that explains the history, where it is another one than the scene's
+    remedy: str = ""  # the options by which it is read without `slips`, or with its columns in their places
+    model: str = ""  # the solver that explains it, where it is not the scene's
 
     @property
     def departs(self) -> bool:

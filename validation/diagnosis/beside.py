@@ -1,7 +1,7 @@
 """A history beside runs of its scene by `dda`: the scene's own, one thing changed, or not known.
 
-A step of contacts that open or slip is a continuous, piecewise linear function of the state before it, so that a run
-depends continuously on every number of the scene, with kinks where a contact switches; every switch may enlarge a
+A step of contacts that open or slip is a continuous, piecewise linear function of the state before it: a run depends
+continuously on every number of the scene, with kinks where a contact switches, and every switch may enlarge a
 difference. Numbers are therefore fitted to the first rows that depart, then to twice as many, up to the horizon behind
 which two correct codes need not agree.
 
@@ -44,42 +44,32 @@ from validation.solvers.registry import by_role
 Candidate: TypeAlias = CandidateChange[Values]
 
 ROUNDS, NUDGE = 8, 1e-6  # evaluations of a fit, those of derivatives apart, and its relative change of a number
-SETTLED = 1e-13  # relative gain at which a fit has arrived: rows near the horizon need all digits of a number
+SETTLED = 1e-13  # relative gain at which a fit has arrived: rows near the horizon need all digits
 FIRST_ROWS = 24  # after the first that departs, by which numbers are fitted first
 LEAST_ROWS = 12  # that depart from the scene's own: fewer tell no cause
-APART = 10.0  # times more than may remain that every other cause must leave somewhere
+APART = 10.0  # times what may remain, that every other cause must leave somewhere
 CLEAR = 3.0  # times more than the best leaves beside noise that every other cause must leave
-NEAR = 0.3  # of what the scene's own run leaves, beyond which a candidate is not pursued to later rows
+NEAR = 0.3  # of what the scene's own run leaves, up to which a candidate is pursued to later rows
 PATIENCE = 2  # groups of rows that every candidate is fitted to
-PURSUED = 7  # candidates of a slow scene that are fitted at all, those nearest along their slope
+PURSUED = 7  # candidates of a slow scene that are fitted, the nearest along their slope
 LARGEST = math.log(1e4)  # of a factor that a number may be wrong by; other units are 1e3 and 1e-3
 FARTHEST = 1e12  # times what may remain: a run that fails is no nearer than that
 POWERS = (-2.0, -1.0, -0.5, 0.5, 1.0, 2.0)  # by which numbers of one product stand for each other
 SAME_NUMBER = 1e-4  # relative: two fits that came to the same number are one
 MOST_ALIKE = 6  # causes that are listed
-ELSEWHERE = 0.1  # of a factor's logarithm: a number with whose change by that no row changes is none
+ELSEWHERE = 0.1  # of a factor's logarithm: a number is none if its change by that changes no row
 NOISE = 1e-2  # of the largest value: more is not put down to noise
-NOISY = 4 * LAGS  # rows from which on all lags are there by which noise is told from a shape
+NOISY = 4 * LAGS  # rows from which on noise is told from a shape by all lags
 
 
 @dataclass(frozen=True, eq=False)
 class RunExplanation:
-    """A candidate at its best number, with what its run leaves.
-
-    Attributes
-    ----------
-    ratio
-        Over what may remain, in the worst row [1].
-    left
-        Root mean square over the largest value, of the worst column [1].
-    is_noise
-        Whether that is more than digits, but has no shape.
-    """
+    """A candidate at its best number, with what its run leaves."""
 
     candidate: Fitted[Values]
-    ratio: float
-    left: float
-    is_noise: bool = False
+    ratio: float  # of what it leaves to what may remain, in the worst row [1]
+    left: float  # root mean square over the largest value, of the worst column [1]
+    is_noise: bool = False  # whether that is more than digits, but has no shape
 
     @property
     def explains(self) -> bool:
@@ -117,19 +107,6 @@ def rank(explanation: RunExplanation) -> tuple[bool, float]:
 class SceneSearch:
     """The search for what gives a history back, beside runs of its scene by `dda`.
 
-    Attributes
-    ----------
-    scene
-        At the steps of the history.
-    reading
-        The history as it is read.
-    recorded
-        Its columns, (columns, rows).
-    scene_run
-        Columns of the scene's own run at all rows.
-    allowed
-        What may remain of each row, (columns, rows that can be judged).
-
     Raises
     ------
     InputError
@@ -143,11 +120,11 @@ class SceneSearch:
     model = ""  # name of the solver whose runs they are, where it is another one than `dda`
     model_words = ""
 
-    scene: Scene
+    scene: Scene  # at the steps of the history
     reading: Reading
-    recorded: Array = field(init=False)
-    scene_run: Array = field(init=False)
-    allowed: Array = field(init=False)
+    recorded: Array = field(init=False)  # columns of the history, (columns, rows)
+    scene_run: Array = field(init=False)  # columns of the scene's own run at all rows
+    allowed: Array = field(init=False)  # what may remain, (columns, rows that can be judged)
 
     def __post_init__(self) -> None:
         """Begin with the scene's own run."""
@@ -164,21 +141,16 @@ class SceneSearch:
         allowed = np.maximum(units + ARITHMETIC * sizes, least) + self.spread({}, scene_run)
         self.allowed = allowed[:, np.all(np.isfinite(allowed), axis=0)]
 
-    # ---- of a kind of scene -----------------------------------------------------------------------------------------
+    # ---- of a kind of scene ----
 
     def candidates(self) -> Iterator[Candidate]:
         """Yield everything that may be changed in the scene, one thing at a time."""
         raise NotImplementedError
 
     def solved(self, values: Values, steps: int, is_shifted: bool) -> Array | None:
-        """Return the columns of a change at all of its own steps, (columns, steps); None where there is no such run.
+        """Return the columns of a change at all of its own steps, (columns, steps); None if there is no such run.
 
-        Parameters
-        ----------
-        steps
-            Of the history.
-        is_shifted
-            Whether a number is larger by `SHIFT`, as rounding makes it in another code.
+        A shifted run has a number larger by `SHIFT`, as rounding makes it in another code.
         """
         raise NotImplementedError
 
@@ -187,7 +159,7 @@ class SceneSearch:
         """The candidates, each of them once."""
         return list(self.candidates())
 
-    # ---- runs -------------------------------------------------------------------------------------------------------
+    # ---- runs ----
 
     @property
     def rows(self) -> int:
@@ -234,7 +206,7 @@ class SceneSearch:
         return np.flatnonzero(np.any(np.abs(self.over(self.scene_run, self.rows)) > 1, axis=0))
 
     def is_noise(self, columns: Array) -> bool:
-        """Whether columns leave noise: small, without a shape, and no row by itself that is another one."""
+        """Whether columns leave noise: small, without a shape, and no row that stands out."""
         rest = self.recorded[:, : self.rows] - columns[:, : self.rows]
         if self.rows < NOISY or self.left(columns) > NOISE:
             return False
@@ -259,7 +231,7 @@ class SceneSearch:
         return [float(gap / size) if size else 0.0 for gap, size in zip(apart, sizes, strict=True)]
 
     def left(self, columns: Array) -> float:
-        """Return what columns leave up to the horizon: root mean square over the largest value, the worse column.
+        """Return what columns leave up to the horizon: root mean square over the largest value, of the worst column.
 
         Infinite where the horizon comes before the first row.
         """
@@ -277,15 +249,12 @@ class SceneSearch:
         departure = evidence.measured(self.scene_run[0, : self.rows], self.recorded[0, : self.rows], rows, 0.0)
         return replace(departure, step=int(rows[self.departing[0]]) + 1)
 
-    # ---- the search -------------------------------------------------------------------------------------------------
+    # ---- the search ----
 
     def explanations(self, begun: Sequence[Fitted[Values]] = ()) -> list[RunExplanation]:
         """Return all candidates that were pursued to the last row, the one that leaves least first.
 
-        Parameters
-        ----------
-        begun
-            The candidates, with numbers to begin from, where another search has found which can be meant.
+        They are those `begun`, with numbers to begin from, where another search has found which can be meant.
         """
         departing = self.departing
         if len(departing) < LEAST_ROWS or largest(self.over(self.scene_run, self.rows)) <= APART:
@@ -295,13 +264,13 @@ class SceneSearch:
             groups.append(min(self.rows, 2 * groups[-1]))
         candidates = list(begun) or [Fitted(change, 0.0, math.inf) for change in self.changes]
         for number, rows in enumerate(groups):
-            # what remains of these rows if every one leaves as much as an explanation never may
+            # what remains if every row leaves as much as an explanation never may
             near = APART * math.sqrt(rows * len(self.allowed))
             candidates = self._fitted(candidates, rows, number, near)
             if number + 1 >= self.patience:
                 bar = max(NEAR * norm(self.over(self.scene_run, rows)), near)
                 candidates = [candidate for candidate in candidates if candidate.remainder <= bar]
-        # what is smaller or larger by more is forgotten, or rigid, which candidates of their own say
+        # a factor beyond is forgotten, or rigid, which candidates of their own say
         sensible = [candidate for candidate in candidates if abs(candidate.u) <= LARGEST]
         explanations = sorted(map(self.judged, sensible), key=rank)
         explanations = [each for each in explanations if each.ratio > APART or self._is_determined(each.candidate)]
@@ -310,7 +279,7 @@ class SceneSearch:
         return sorted(explanations, key=rank)
 
     def alike(self, explanations: Sequence[RunExplanation]) -> list[RunExplanation]:
-        """Return the explanations that the rows cannot tell apart, the best first; none where nothing explains."""
+        """Return the explanations that the rows cannot tell apart, the best first; none if nothing explains."""
         if not explanations or not explanations[0].explains:
             return []
         bar = CLEAR * explanations[0].left if explanations[0].is_noise else 0.0
@@ -359,7 +328,7 @@ class SceneSearch:
     def _fitted(
         self, candidates: Sequence[Fitted[Values]], rows: int, number: int, near: float
     ) -> list[Fitted[Values]]:
-        """Return candidates at the numbers that come nearest in the first rows, of slow scenes the nearest few."""
+        """Return candidates at their best numbers in the first rows, of slow scenes the nearest few."""
 
         def residual(change: Candidate, u: float) -> Array:
             return self.over(self.run(change.changed(u), rows), rows).ravel()
@@ -394,7 +363,7 @@ class SceneSearch:
 
 
 def _is_same(first: RunExplanation, second: RunExplanation) -> bool:
-    """Whether two explanations are one: a number that was fitted to that of a plain change, or either start."""
+    """Whether two explanations are one: a number fitted to that of a plain change, or either start."""
     if first.id != second.id:
         return False
     if first.id == "scheme":
@@ -404,35 +373,19 @@ def _is_same(first: RunExplanation, second: RunExplanation) -> bool:
     return abs(first.value - second.value) <= SAME_NUMBER * max(1.0, abs(second.value))
 
 
-# ---- the answer -----------------------------------------------------------------------------------------------------
+# ---- the answer ----
 
 
 @dataclass(frozen=True, eq=False)
 class RunVerdict:
-    """What a history came to.
-
-    Attributes
-    ----------
-    search
-        The history beside its scene.
-    explained
-        Whether it is certain.
-    causes
-        Ids of what explains it, or comes nearest, with their numbers.
-    words
-        Of these causes.
-    best
-        What the run changes that explains it, or comes nearest.
-    alike
-        Causes that give the same rows.
-    """
+    """What a history came to."""
 
     search: SceneSearch
-    explained: bool
-    causes: Mapping[str, float | None] = field(default_factory=dict)
-    words: Mapping[str, str] = field(default_factory=dict)
-    best: Values = field(default_factory=dict)
-    alike: Sequence[Mapping[str, Any]] = ()
+    explained: bool  # whether it is certain
+    causes: Mapping[str, float | None] = field(default_factory=dict)  # ids of what explains it, or comes nearest
+    words: Mapping[str, str] = field(default_factory=dict)  # of these causes
+    best: Values = field(default_factory=dict)  # what the run changes that explains it, or comes nearest
+    alike: Sequence[Mapping[str, Any]] = ()  # causes that give the same rows
 
     @cached_property
     def columns(self) -> Array:
@@ -443,7 +396,7 @@ class RunVerdict:
 
     @property
     def left(self) -> float:
-        """What that run leaves [-]."""
+        """What that run leaves over the largest value, of the worst column [-]."""
         return self.search.left(self.columns)
 
 
@@ -533,7 +486,7 @@ def _first_rows(search: SceneSearch) -> str:
 
 
 def _stages(search: SceneSearch) -> list[Stage]:
-    """Return what can be seen without a cause: how it reads, and each column alone."""
+    """Return what is seen without a cause: how it reads, and each column alone."""
     stages = [evidence.reading_stage(search.reading)]
     shares = search.over(search.scene_run, search.rows)
     is_noise = search.is_noise(search.scene_run)

@@ -17,12 +17,12 @@ from validation.diagnosis.variant import Rectangle, Variant
 from validation.runs.numbers import significant
 from validation.theory.edges import edge
 
-BENIGN_COMPLIANCE = 0.05  # share of the static displacement that a base may add before the springs are in question
-ROUND_EXACT = 1e-6  # relative error that a fit without noise leaves of a factor
-ROUND_DIGITS = 2  # significant digits of a factor that a person types, and that no base has by chance
-ROUND_ERROR = 1e-3  # relative error of a factor, beyond which its digits are not known well enough to be called round
-TRIALS = 21  # dead bands that are tried on either side for the interval in which one lies
-WIDEST_BAND = 5.0  # over the fitted one, that is tried
+BENIGN_COMPLIANCE = 0.05  # of the static displacement, that a base may add before the springs are in question
+ROUND_EXACT = 1e-6  # relative error of a factor by a fit without noise
+ROUND_DIGITS = 2  # significant digits of a factor that a person types, and no base has by chance
+ROUND_ERROR = 1e-3  # relative error beyond which the digits of a factor are not known well enough
+TRIALS = 21  # dead bands that are tried on either side for the interval of one
+WIDEST_BAND = 5.0  # that is tried, over the fitted one
 BAND_ERROR = 3.2e-4  # relative, to which an end of that interval is found
 SAME_MISFIT = 1e-3  # relative: rows that are no better and no worse
 HALF = 0.5  # steps late: a mean of two
@@ -74,11 +74,11 @@ DERIVED: dict[str, Callable[[Rectangle, Variant], float]] = {  # numbers that ar
 
 
 def all_benign(ids: Iterable[str]) -> bool:
-    """Whether integrator and contact law are as they should be."""
+    """Whether no cause is a fault of integrator or contact law."""
     return all(CAUSES[name].benign for name in ids)
 
 
-# ---- what a fitted variant says -------------------------------------------------------------------------------------
+# ---- what a fitted variant says ----
 
 
 def compliance(c: Rectangle, variant: Variant) -> float:
@@ -87,10 +87,7 @@ def compliance(c: Rectangle, variant: Variant) -> float:
 
 
 def benign_springs(rectangle: Rectangle, variant: Variant) -> bool:
-    """Whether the springs may be the scene's, on a slightly compliant base or one that is seen to swing.
-
-    No base adds a negative compliance.
-    """
+    """Whether the springs may be the scene's, on a base that adds little compliance, or more if it is seen to swing."""
     soft = compliance(rectangle, variant)
     return 0 <= soft <= BENIGN_COMPLIANCE * (1 if variant.base == 0 else 4)
 
@@ -107,10 +104,7 @@ def round_factor(factor: float, error: float) -> bool:
 
 
 def is_base(rectangle: Rectangle, variant: Variant, softness_error: float) -> bool:
-    """Whether softer springs are called a base: benign ones whose factor no person would type.
-
-    A base of its own mass is known by its swing, whatever the factor.
-    """
+    """Whether softer springs are called a base: one that swings, or benign ones whose factor no person would type."""
     if not benign_springs(rectangle, variant):
         return False
     return variant.base > 0 or not round_factor(math.exp(-variant.softness), softness_error)
@@ -121,10 +115,7 @@ def causes_of(
 ) -> list[str]:
     """Return the ids of what was found, in the catalogue's order; springs are called by what they stand for.
 
-    Parameters
-    ----------
-    softness_error
-        Half width of the 95 % interval of the softness, which is the relative error of the springs' factor [-].
+    The half width of the 95 % interval of the softness is the relative error of the springs' factor [-].
     """
     names = set(ids)
     if "springs-factor" in names and is_base(rectangle, variant, softness_error):
@@ -151,7 +142,7 @@ def values_of(rectangle: Rectangle, ids: Sequence[str], v: Variant) -> dict[str,
 
 
 def intervals_of(target: Target, explanation: Fit, ids: Sequence[str]) -> dict[str, tuple[float, float]]:
-    """Return the 95 % interval of every value of an explanation that was fitted, or that the rows leave open."""
+    """Return the 95 % interval of every value of an explanation that was fitted or is left open."""
     values = values_of(target.column, ids, explanation.variant)
     ends: dict[str, tuple[float, float]] = {}
     for name, interval in intervals(explanation).items():
@@ -205,18 +196,13 @@ def roundest(low: float, high: float) -> float:
     return next((value for value in rounded if low <= value <= high), middle)
 
 
-# ---- in words -------------------------------------------------------------------------------------------------------
+# ---- in words ----
 
 
 def words_of(name: str, value: float, v: Variant | None = None, scene: Variant | None = None, **further: str) -> str:
-    """Return a cause with its number.
+    """Return a cause with its number, by the fitted variant and the scene's own where there are such.
 
-    Parameters
-    ----------
-    v, scene
-        The fitted variant and the scene's own, where there are such.
-    further
-        What else a sentence holds: the scene's `scheme`, `open_steps`, `between`.
+    `further` is what else a sentence holds: the scene's `scheme`, `open_steps`, `between`.
     """
     cause = CAUSES[name]
     words = {

@@ -27,19 +27,19 @@ from validation.solvers.columns.names import column_of
 if TYPE_CHECKING:
     from dda.bodies.column_history import ColumnResult
 
-REPEATS = 300  # runs of a scene for one history, about: compiled code pays
+REPEATS = 300  # runs of a scene for one history: compiled code pays
 WIDE = 1e6  # times a gap, that never closes
 LEAST_LIMIT = 2  # solves of a step: no program gives up after fewer
 PARTS = (2, 4)  # steps of a program in one of the scene's
-NO_FRICTION = 1e-9  # of the strength: what slips all the time, which no scene can state
+NO_FRICTION = 1e-9  # of the strength: it slips all the time, which no scene can state
 BONDED = "bonded"  # among the values of a change, no key of scenes: contacts carry tension and never slip
 
 
-# ---- candidates -----------------------------------------------------------------------------------------------------
+# ---- candidates ----
 
 
 def of_scene(scene: Scene) -> Iterator[Candidate]:
-    """Yield everything that may be changed in a scene with such a column, one thing at a time."""
+    """Yield everything that may be changed in a scene with such a column."""
     yield from of_schemes(scene)
     for parts in PARTS:
         words = f"the program makes {parts} steps in one of the scene's"
@@ -92,7 +92,7 @@ def laws(scene: Scene) -> Iterator[Candidate]:
         yield fixed("velocity-factor", f"the starting velocity is {words}", layers("velocity")(scene, factor), factor)
 
 
-# ---- runs -----------------------------------------------------------------------------------------------------------
+# ---- runs ----
 
 
 class ColumnSearch(SceneSearch):
@@ -102,7 +102,7 @@ class ColumnSearch(SceneSearch):
     WOULD_TELL = "the rows up to the first switch with every step, or a run with one contact"
 
     def candidates(self) -> Iterator[Candidate]:
-        """Yield everything that may be changed in the scene, one thing at a time."""
+        """Yield everything that may be changed in the scene."""
         return of_scene(self.scene)
 
     def solved(self, values: Values, steps: int, is_shifted: bool) -> Array | None:
@@ -135,16 +135,11 @@ class ColumnSearch(SceneSearch):
         return result if len(result.time) == steps else None
 
 
-# ---- the verdict ----------------------------------------------------------------------------------------------------
+# ---- the verdict ----
 
 
 def compare_column(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
-    """Judge a history against a scene with a column whose contacts open or slip.
-
-    Parameters
-    ----------
-    tolerance
-        Relative L2 difference up to which a column counts as the scene's own [-].
+    """Judge a history against a scene with a column whose contacts open or slip, as `validation.diagnosis.compare`.
 
     Raises
     ------

@@ -72,10 +72,7 @@ def force_of(method: str, contact: Contact, gaps: Gaps) -> tuple[Array, Flags]:
 def _conserving(k: Array, C: Array, start: Array, free: Array, pressed: Array) -> Array:
     """Return the force of a spring that does exactly the work of its energy, by the signs of both gaps.
 
-    Parameters
-    ----------
-    pressed
-        The force where both gaps are closed [N].
+    `pressed` is the force where both are closed [N].
     """
     # opening: C N^2 + (w_f - w0) N = k w0^2 / 2, the root that presses
     lifted = free - start

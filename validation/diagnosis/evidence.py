@@ -1,7 +1,6 @@
 """What can be measured of a history: where it leaves what the scene expects, and what a person would look at in turn.
 
-Does it read, is it bounded, is each column right by itself, where does it come to rest, at which frequency and with
-which damping does it swing. Every stage puts the file beside the scene's own history; none depends on a fit.
+Every stage puts the file beside the scene's own history; none depends on a fit.
 """
 
 from __future__ import annotations
@@ -28,7 +27,7 @@ from validation.runs.numbers import share_text
 Kind = Literal["phase", "amplitude", "damping", "offset"]
 DEPARTED = 1e-3  # of the largest displacement: a smaller difference is no departure
 NOISE = 4.0  # standard deviations
-BEYOND = 1e9  # times as large as anything that the scene does: no unit is so wrong
+BEYOND = 1e9  # times anything that the scene does: no unit is so wrong
 GROWTH = 100.0  # times as large in the last third as in the first, and as anything that the scene does
 CLOSE_STATIC, CLOSE_FREQUENCY, CLOSE_DAMPING = 1e-3, 1e-3, 0.02  # relative, and of a ratio's size: what counts as equal
 ROWS_IN_WORDS = 3
@@ -46,7 +45,7 @@ class Departure:
 def expected(target: Target, explanation: Fit, scene: Variant, causes: Sequence[str]) -> tuple[Array, Array]:
     """Return displacement [m] and pressure [Pa] of the scene's own scheme with what a program may add without fault.
 
-    Weight, moving geometry and a slightly compliant base are taken over from the fit.
+    That is the fit's weight, moving geometry and slightly compliant base.
     """
     v = explanation.variant
     yields = "base-compliance" in causes
@@ -61,8 +60,8 @@ def departure(
 ) -> Departure | None:
     """Return where the history departs; None if there is no cause but benign ones.
 
-    The column that leaves first dates it; one that never leaves by more than digits and noise dates nothing. A contact
-    that opens is a departure from its first open step on, even before the displacement shows it.
+    The column that leaves first by more than digits and noise dates it. A contact that opens is a departure from its
+    first open step on, even before the displacement shows it.
     """
     if all_benign(causes):
         return None
@@ -129,7 +128,7 @@ class Stage:
 
 
 def surrounded(stage: Stage, explained_by: str = "what surrounds the block") -> Stage:
-    """Return a stage whose number differs from the scene's for a reason that is no fault: neither right nor wrong."""
+    """Return a stage whose number differs from the scene's for a reason that is no fault."""
     if stage.agrees is not False:
         return stage
     return replace(stage, agrees=None, words=f"{stage.words}; {explained_by} explains it")
@@ -147,14 +146,14 @@ def growth(values: Array, expected: Array) -> float | None:
 
 
 def reading_stage(reading: Reading) -> Stage:
-    """Return whether a history reads as the scene's, with its errors of sign and unit and what differs in its times."""
+    """Return whether a history reads as the scene's: its errors of sign and unit, what differs in its times."""
     note = reading.stepping.note
     words = ", ".join(reading.slips) or "units, signs and columns are the scene's"
     return Stage("reading", not reading.slips, words + (f"; {note}" if note else ""), {})
 
 
 def words_of_rows(single_rows: Sequence[tuple[str, int, float]]) -> str:
-    """Return single rows by column and step, with their errors over the column's largest value."""
+    """Return single rows by column and step, with errors over the column's largest value."""
     words = [
         f"{name.replace('_', ' ')} in step {step}, {share_text(error, 2)} off" for name, step, error in single_rows
     ]
@@ -163,7 +162,7 @@ def words_of_rows(single_rows: Sequence[tuple[str, int, float]]) -> str:
 
 
 def single_rows_stage(single_rows: Sequence[tuple[str, int, float]]) -> Stage:
-    """Return the stage of single rows that stand out of what the rest of the history says."""
+    """Return the stage of single rows that stand out of the rest of the history."""
     return Stage("rows", False, words_of_rows(single_rows), {"rows": float(len(single_rows))})
 
 
@@ -176,16 +175,9 @@ def earlier(departure: Departure | None, single_rows: Sequence[tuple[str, int, f
 
 
 def stages(target: Target, expected: Sequence[Array], reading: Reading, factor: float | None) -> list[Stage]:
-    """Return the stages up to the damping.
+    """Return the stages up to the damping, with the scene's own displacement and pressure at the recorded rows.
 
-    Parameters
-    ----------
-    target
-        The history as it is read.
-    expected
-        The scene's own displacement and pressure at the recorded rows.
-    factor
-        Growth in a step, None if bounded.
+    The factor is the growth in a step, None if bounded.
     """
     bounded = "bounded" if factor is None else f"grows by a factor of {factor:.4g} a step"
     measured = [reading_stage(reading), Stage("bounded", factor is None, bounded, {"growth": factor})]
@@ -203,7 +195,7 @@ def stages(target: Target, expected: Sequence[Array], reading: Reading, factor: 
 
 
 def column_stage(name: str, agrees: bool, misfit: float, beside: str, numbers: dict[str, float | None]) -> Stage:
-    """Return whether a column alone is the scene's, with its relative L2 difference and what stands beside that."""
+    """Return whether a column alone is the scene's, with its relative L2 difference."""
     what = "is the scene's" if agrees else f"is {share_text(misfit)} off{beside}"
     return Stage(name, agrees, f"the {name.replace('_', ' ')} alone {what}", {"misfit": misfit, **numbers})
 
@@ -228,7 +220,6 @@ def _motion(target: Target, expected: Array) -> list[Stage]:
 
 
 def _beside(name: str, verb: str, unit: str, file: float | None, scene: float | None, close: float) -> Stage:
-    """Return one measured number beside the scene's."""
     if file is None or scene is None:
         return Stage(name, None, "not told by these rows", {"file": file, "scene": scene, "ratio": None})
     least = LEAST_DAMPING if name == "damping" else 0.0

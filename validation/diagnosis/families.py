@@ -22,9 +22,9 @@ WIDER = "load.eccentricity, or a printed mass: the width of the block and of its
 def relatives(target: Target, scene: Variant, verdict: Verdict, ids: Sequence[str], v: Variant) -> list[dict[str, Any]]:
     """Return what gives the same rows as the named causes.
 
-    Most of it is found by running the other candidates. Three are in no candidate: the rows depend on m/(k dt^2), E/p
-    and load/p only (m the mass, k the springs), so that another step is another density, a wider block one on softer
-    springs, and a base without mass stands in series with them.
+    Most of it is found by running the other candidates. Three are in no candidate, since the rows depend on m/(k dt^2),
+    E/p and load/p only (mass m, springs k): another step is another density, a wider block one on softer springs, and a
+    base without mass stands in series with them.
     """
     values = values_of(target.column, ids, v)
     alike: list[dict[str, Any]] = []
@@ -33,7 +33,7 @@ def relatives(target: Target, scene: Variant, verdict: Verdict, ids: Sequence[st
         numbers = {"step-factor": significant(1 / math.sqrt(density), 6)}
         alike.append(_relative(["step-factor"], numbers, CAUSES["density-factor"].further_scene))
     if "base-compliance" in ids and v.base == 0:
-        # the springs that give the rows of a base without mass: it stands in series with them
+        # a base without mass stands in series with the springs
         others = [name for name in ids if name != "base-compliance"]
         numbers = {name: values[name] for name in others if name in values}
         numbers["springs-factor"] = significant(math.exp(-v.softness), 6)
@@ -48,7 +48,7 @@ def relatives(target: Target, scene: Variant, verdict: Verdict, ids: Sequence[st
 
 
 def sign_or_gravity(target: Target, ids: Sequence[str], corrected: Sequence[Slip]) -> list[dict[str, Any]]:
-    """Return the two causes of a history whose columns are all reversed, where gravity is the only load."""
+    """Return the two causes of a history with all columns reversed, under gravity alone."""
     columns = 1 if target.pressure is None else 2
     c = target.column
     if list(ids) != ["sign"] or len(corrected) < columns or c.pressure or not c.gravity:
@@ -58,7 +58,7 @@ def sign_or_gravity(target: Target, ids: Sequence[str], corrected: Sequence[Slip
 
 
 def as_good(target: Target, verdict: Verdict) -> list[dict[str, Any]]:
-    """Return the explanations that the file cannot tell from the best one, or the other names of a time scheme."""
+    """Return the explanations as good as the best one, or the other names of a time scheme."""
     scene = verdict.scene_fit.variant
     if verdict.alike:
         return [_of_explanation(target, explanation, scene) for explanation in (verdict.best, *verdict.alike)]

@@ -40,23 +40,11 @@ class DiagnosisHooks(Hooks):
         return dict(AVERAGE)
 
     def judged(self, scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
-        """Judge a history of a scene that `check` lets pass.
-
-        Raises
-        ------
-        InputError
-            The history is zero throughout, or does not fit.
-        """
+        """Judge a history of a scene that `check` lets pass; an `InputError` if it is all zero or does not fit."""
         raise unread(scene, scene.kind_in_words)
 
     def check(self, scene: Scene) -> None:
-        """Refuse what `compare` does not step, before anything of it is run.
-
-        Raises
-        ------
-        InputError
-            With what is not known here.
-        """
+        """Refuse by an `InputError` what `compare` does not step, before anything of it is run."""
         raise unread(scene, scene.kind_in_words)
 
     def rivals(self, scene: Scene) -> tuple[str, ...]:

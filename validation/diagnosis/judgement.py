@@ -1,4 +1,4 @@
-"""Judgement of another program by its history: the same, or where and how it departs, why, and what is not known."""
+"""Judgement of another program by its history: the same, or where, how and why it departs, and what is not known."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class Case:
     column: Rectangle
     scene_variant: Variant
     left_out: Flags | None = None  # single rows of each column that are none of the motion's
-    as_read: Reading | None = None  # with those rows as the file has them; in `reading` they are as explained
+    as_read: Reading | None = None  # with those rows as in the file; in `reading` they are as explained
 
     @cached_property
     def target(self) -> Target:
@@ -133,7 +133,7 @@ def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
 
 
 def _of_swapped(scene: Scene, foreign: Foreign, pair: tuple[str, str], tolerance: float) -> Answer:
-    """Return the answer to a history with two columns in their places, and what to type for them to be there."""
+    """Return the answer to a history with two columns exchanged, and what to type for that."""
     foreign = exchanged(foreign, *pair)
     answer = DiagnosisHooks.of(scene).judged(scene, foreign, tolerance)
     first, second = (name.replace("_", " ") for name in pair)
@@ -145,7 +145,6 @@ def _of_swapped(scene: Scene, foreign: Foreign, pair: tuple[str, str], tolerance
 
 
 def _refuse_what_is_not_known(scene: Scene) -> None:
-    """Refuse a scene that compare does not step, before anything of it is run."""
     DiagnosisHooks.of(scene).check(scene)
     features.refuse_damping(scene, "compare")
     features.refuse_sweep(scene)
@@ -216,7 +215,7 @@ def judged_block(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
 
 
 def _beyond(scene: Scene) -> list[str]:
-    """Return what `compare` does not take of a scene whose contact opens, and nothing that it does."""
+    """Return what `compare` does not take of a scene whose contact opens."""
     gap, velocity = scene.contact.gap, scene.block.velocity
     numbers = [f"contact.gap = {gap:g}"] if gap else []
     numbers += [f"block.velocity = {velocity:g}"] if velocity else []
@@ -225,8 +224,8 @@ def _beyond(scene: Scene) -> list[str]:
 
 
 def _best(cases: Sequence[Case]) -> tuple[Case, Verdict]:
-    """Return the likeliest reading that a cause explains, else the one that one comes nearest to."""
-    for case in cases:  # a slip of sign or unit needs no number, and nothing else that is changed
+    """Return the likeliest reading that a cause explains, else the nearest."""
+    for case in cases:  # a slip of sign or unit needs nothing else that is changed
         verdict = as_it_is(case.target, case.scene_variant)
         if verdict.same:
             return case, verdict
@@ -235,7 +234,7 @@ def _best(cases: Sequence[Case]) -> tuple[Case, Verdict]:
     for case in cases:
         verdict = simple(case.target, case.scene_variant)
         verdicts.append((case, verdict))
-        # a slip of sign or unit beside another cause is less likely than that of a datum alone
+        # a slip of sign or unit beside another cause is less likely than one of a datum alone
         if verdict.explains and len(case.reading.corrected) == fewest:
             return case, verdict
         is_fewest_judged = any(len(other.reading.corrected) == fewest for other, _ in verdicts)
@@ -246,7 +245,7 @@ def _best(cases: Sequence[Case]) -> tuple[Case, Verdict]:
 
 
 def _without_single_rows(case: Case, verdict: Verdict) -> tuple[Case, Verdict]:
-    """Return case and verdict without single rows that stand out, if without them a cause, or none, explains it."""
+    """Return case and verdict without single rows that stand out, if a cause, or none, then explains the history."""
     for explanation in (verdict.scene_fit, verdict.best.fit):
         rest = case.without_single_rows(explanation)
         if rest is None:
@@ -257,7 +256,7 @@ def _without_single_rows(case: Case, verdict: Verdict) -> tuple[Case, Verdict]:
     return case, verdict
 
 
-# ---- answers --------------------------------------------------------------------------------------------------------
+# ---- answers ----
 
 
 def _stages(case: Case, factor: float | None = None) -> list[Stage]:
@@ -381,7 +380,7 @@ def _has_second_split(target: Target, v: Variant) -> bool:
 
 
 def _told_apart(target: Target, v: Variant) -> Variant:
-    """Return a variant, of two that give the same rows the usual one: the smaller split, the clipped dashpot."""
+    """Return the usual one of two variants that give the same rows: the smaller split, the clipped dashpot."""
     if v.family == "composite" and _has_second_split(target, v):
         return replace(v, split=min(schemes.split_of(v), schemes.companion_split(v)))
     if v.contact == "dashpot" and not v.clipped:
@@ -391,7 +390,7 @@ def _told_apart(target: Target, v: Variant) -> Variant:
 
 
 def _opened(target: Target, v: Variant) -> list[int]:
-    """Return the steps, counted from 1, at whose end the contact of a variant is open."""
+    """Return the steps, from 1, at whose end the contact of a variant is open."""
     if not v.opens:
         return []
     return [int(i) + 1 for i in np.flatnonzero(histories(target.column, [v], target.steps).open[:, 0])]

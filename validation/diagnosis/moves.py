@@ -1,7 +1,4 @@
-"""The candidate changes: ways to put a cause into the scene's own computation, fixed or with numbers that are fitted.
-
-The rows of `moves.toml` say which there are, and where their numbers start.
-"""
+"""The candidate changes of `moves.toml`: ways to put a cause into the scene's own computation."""
 
 from __future__ import annotations
 
@@ -59,7 +56,7 @@ TABLE = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="ut
 
 
 def moves(target: Target, scene: Variant) -> list[Move]:
-    """Return every way in which the catalogue's causes may be in a history of a scene."""
+    """Return every way in which causes of the catalogue may be in a history."""
     met = _conditions(target, scene)
     options = _options(target, scene)
     step = np.mean(target.steps)
@@ -117,7 +114,7 @@ def _conditions(target: Target, scene: Variant) -> dict[str, bool]:
 
 
 def _options(target: Target, scene: Variant) -> dict[str, list[dict[str, Any]]]:
-    """Return the fields of a variant that go with a scene, by the names that rows of the table have for them."""
+    """Return fields of a variant that go with a scene, by the names that the table has for them."""
     scene_pair = (scene.alpha, scene.delta) if scene.family == "newmark" else None
     scene_scheme = {"alpha": scene.alpha, "delta": scene.delta, "start": scene.start}
     named = [{"alpha": a, "delta": d, "family": "newmark"} for a, d in NAMED.values() if (a, d) != scene_pair]

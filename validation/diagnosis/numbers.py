@@ -25,7 +25,7 @@ EVERYWHERE, WITHOUT_JOINT = "everywhere", "without a joint"  # of a column's con
 
 
 def springs(scene: Scene, factor: float) -> Values:
-    """Return the springs, the shear springs with them where they are stated."""
+    """Return the springs larger by a factor, the shear springs with them where they are stated."""
     c = scene.contact
     stiffness = {"contact.stiffness": c.stiffness * factor}
     return stiffness | ({"contact.shear_stiffness": c.shear_stiffness * factor} if c.shear_stiffness else {})
@@ -56,14 +56,10 @@ def layers(key: str, place: int | None = None) -> Callable[[Scene, float], Value
 
 
 def contacts(key: str, place: str = EVERYWHERE) -> Callable[[Scene, float], Values]:
-    """Return the function that makes a datum of a column's contacts larger by a factor.
+    """Return the function that makes a datum of a column's contacts, of a friction angle the tangent, larger.
 
-    Parameters
-    ----------
-    key
-        Its name in ``[column]`` and ``[[column.joint]]``; of a friction angle it is the tangent that is larger.
-    place
-        Where: at all contacts, at those without a joint of their own, or at the height of one [m].
+    `key` is its name in ``[column]`` and ``[[column.joint]]``, `place` where: at all contacts, at those without a joint
+    of their own, or at the height of one [m].
     """
 
     def larger(value: float | str, factor: float) -> float:  # plain data have "inf" for rigid contacts
@@ -117,30 +113,14 @@ def with_more_blocks(scene: Scene) -> Values:
 
 @dataclass(frozen=True, eq=False)
 class CandidateChange(Generic[Change]):
-    """One thing changed; with `starts` it has a number u that is fitted.
+    """One thing changed; with `starts` it has a number u that is fitted."""
 
-    Attributes
-    ----------
-    id
-        Of the cause.
-    words
-        The sentence of the cause by its number.
-    value
-        The number that people understand, of u.
-    changed
-        What the change gives, of u.
-    starts
-        Values of u that a fit begins from.
-    nudge
-        Of u, for the first derivative.
-    """
-
-    id: str
-    words: Callable[[float], str]
-    value: Callable[[float], float]
-    changed: Callable[[float], Change]
-    starts: tuple[float, ...] = ()
-    nudge: float = 1e-3
+    id: str  # of the cause
+    words: Callable[[float], str]  # the sentence of the cause by its number
+    value: Callable[[float], float]  # the number that people understand, of u
+    changed: Callable[[float], Change]  # what the change gives, of u
+    starts: tuple[float, ...] = ()  # values of u that a fit begins from
+    nudge: float = 1e-3  # of u, for the first derivative
 
     def giving(self, changed: Callable[[float], Any]) -> CandidateChange[Any]:
         """Return the same change with another thing that it gives."""
@@ -162,7 +142,7 @@ class Number:
 
 
 def numbers_of_column(scene: Scene) -> Iterator[Number]:
-    """Yield the numbers of a column that may be wrong by a factor, none that is zero or absent."""
+    """Yield the numbers of a column, as `DiagnosisHooks.numbers`."""
     if any(math.isfinite(layer.young) for layer in scene.column.layer):
         yield Number("young-factor", OF_WAVES, layers("young"))
     yield Number("density-factor", "the density", layers("density"))
@@ -173,7 +153,7 @@ def numbers_of_column(scene: Scene) -> Iterator[Number]:
 
 
 def numbers_of_block(scene: Scene) -> Iterator[Number]:
-    """Yield the numbers of a block that may be wrong by a factor, none that is zero or absent."""
+    """Yield the numbers of a block, as `DiagnosisHooks.numbers`."""
     yield from _plain(scene, "block", *(["turning"] if features.ROTATION in features.of(scene) else []))
     yield Number("width-factor", "the width", lambda s, f: sized(s, f, 1.0))
     yield Number("height-factor", "the height", lambda s, f: sized(s, 1.0, f))
@@ -188,14 +168,14 @@ def numbers_of_block(scene: Scene) -> Iterator[Number]:
 
 
 def numbers_of_layers(scene: Scene) -> Iterator[Number]:
-    """Yield the densities of a column's layers, where they differ, each by itself."""
+    """Yield the densities of a column's layers, where they differ."""
     stated = scene.column.layer[:MOST_JOINTS]
     for place, _ in enumerate(stated) if len({layer.density for layer in stated}) > 1 else ():
         yield Number("density-factor", f"the density of layer {place + 1}", layers("density", place))
 
 
 OF_WAVES = "the modulus of the waves, by Young's modulus or Poisson's ratio,"
-MOST_JOINTS = 8  # or layers, whose numbers are tried one by one: with more, hardly one stands out
+MOST_JOINTS = 8  # or layers, whose numbers are tried one by one: of more, hardly one stands out
 
 
 def _of_contacts(scene: Scene) -> Iterator[Number]:
@@ -225,7 +205,7 @@ def _stated(scene: Scene, key: str) -> Any:
 
 
 def _plain(scene: Scene, *tables: str) -> Iterator[Number]:
-    """Yield what is larger by a factor of a key, of tables of keys; later tables have other names for them."""
+    """Yield the keys of tables that may be wrong by a factor; later tables have other names for them."""
     rows = {key: row for table in tables for key, row in TABLE[table].items()}
     for key, (cause, name) in rows.items():
         value = _stated(scene, key)

@@ -1,7 +1,7 @@
 """One thing changed, with a number that is fitted: the candidates, their fit, and which of them count as alike.
 
 Whoever searches says what a candidate gives (a run of a scene by a solver of the suite, or columns moved in time) and
-how far that is from a history. The fits and the decision are those of this module for every kind of scene.
+how far that is from a history.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ UNITS = (1e-3, 1e3)  # factors of a datum in other units: mm, g, kPa, or MPa for
 IN_UNITS = frozenset({"density-factor", "young-factor", "springs-factor", "load-factor"})
 NEAR_UNIT = 0.02  # relative, of a fitted factor that is said to be one of units: the rest is the fit's
 SPAN = 0.05  # of u, that a step of a fit is measured in
-BESIDE_NOTHING = 1e-12  # u that a step of the fit's own length has brought to zero but for rounding
+BESIDE_NOTHING = 1e-12  # u that a step of the fit has brought to zero but for rounding
 TOLD_APART = 1.5e-8  # step of a derivative there, the root of a rounding
 FIRST_ROUNDS = 3  # after which a fit that gets nowhere is given up
 HALVED = 0.5  # of the remainder at the start
@@ -49,15 +49,7 @@ def of_schemes(scene: Scene) -> Iterator[CandidateChange[Values]]:
 
 
 def of_numbers(scene: Scene, factors: Sequence[float], units: bool = True) -> Iterator[CandidateChange[Values]]:
-    """Yield every number of a scene as wrong by a factor e^u.
-
-    Parameters
-    ----------
-    factors
-        That fits begin from.
-    units
-        Whether they begin from other units as well.
-    """
+    """Yield every number of a scene as wrong by a factor e^u; fits begin from the factors, and from `units` as well."""
     hooks = DiagnosisHooks.of(scene)
     for number in (*hooks.numbers(scene), *hooks.numbers_of_layers(scene)):
         starts = (*factors, *(UNITS if units and number.id in IN_UNITS else ()))
@@ -88,26 +80,16 @@ def of_discount(scene: Scene, discounts: Sequence[float]) -> CandidateChange[Val
     )
 
 
-# ---- fits -----------------------------------------------------------------------------------------------------------
+# ---- fits ----
 
 
 @dataclass(frozen=True, eq=False)
 class Fitted(Generic[Change]):
-    """A candidate at its best number so far.
-
-    Attributes
-    ----------
-    change
-        The candidate.
-    u
-        Its number; zero where it has none.
-    remainder
-        Norm of what it leaves of a history, or of what the best number would leave were the history linear in it.
-    """
+    """A candidate at its best number so far."""
 
     change: CandidateChange[Change]
-    u: float
-    remainder: float
+    u: float  # its number, zero where it has none
+    remainder: float  # norm of what it leaves, or of what the best number would leave were the history linear in it
 
 
 def nearest_start(residual: Residual, change: CandidateChange[Change]) -> Fitted[Change]:
@@ -127,7 +109,7 @@ def nearest_start(residual: Residual, change: CandidateChange[Change]) -> Fitted
 
 
 def nearest(candidates: Sequence[Fitted[Change]], number: int, least: float) -> list[Fitted[Change]]:
-    """Return so many of the candidates that leave least, and all that leave no more than `least`, the best first."""
+    """Return so many candidates that leave least, and all that leave no more than `least`, the best first."""
     ordered = sorted(candidates, key=lambda candidate: candidate.remainder)
     bar = max(ordered[min(len(ordered), number) - 1].remainder, least) if ordered else least
     return [candidate for candidate in ordered if candidate.remainder <= bar]
@@ -143,16 +125,9 @@ def fitted(
 ) -> Fitted[Change]:
     """Return a candidate at the number that comes nearest, as it is where it has none.
 
-    Parameters
-    ----------
-    rounds
-        Evaluations, those of derivatives apart.
-    nudge
-        Relative change of u for a derivative.
-    settled
-        Relative gain at which the fit has arrived.
-    hopeless
-        Remainder beyond which a fit is given up whose first rounds have not halved it, nor would its slope.
+    Rounds are evaluations but for those of derivatives, for which u changes by the relative `nudge`; `settled` is the
+    relative gain at which the fit has arrived, `hopeless` the remainder beyond which it is given up if its first rounds
+    have not halved it, nor would its slope.
     """
     if not candidate.change.starts:
         return replace(candidate, remainder=norm(residual(0.0)))
@@ -172,7 +147,7 @@ def _least_squares(
     known = lru_cache(maxsize=4)(residual)
 
     def slope(u: Array) -> Array:
-        """Return the derivative by a step relative to u, of rounding beside a span by one that a double can tell."""
+        """Return the derivative by a step relative to u, beside zero by one that a double can tell."""
         x = float(u[0])
         step = nudge * x if abs(x) > BESIDE_NOTHING else TOLD_APART
         return np.asarray((known(x + step) - known(x)) / step)[:, None]
@@ -189,22 +164,15 @@ def _least_squares(
     return replace(candidate, u=float(solution.x[0]), remainder=norm(solution.fun))
 
 
-# ---- the decision ---------------------------------------------------------------------------------------------------
+# ---- the decision ----
 
 
 def alike(
     explanations: Sequence[Explanation], remainder: Callable[[Explanation], float], times: float, least: float = 0.0
 ) -> list[Explanation]:
-    """Return those of some explanations that leave hardly more than the best, the best first.
+    """Return those of some explanations whose remainder is hardly more than the best's, the best first.
 
-    Parameters
-    ----------
-    remainder
-        What one leaves.
-    times
-        More than the best that others may leave.
-    least
-        That the best counts as leaving: below it no difference is one.
+    Hardly more is at most so many times the best's, which counts as `least` at least: below it no difference is one.
     """
     ordered = sorted(explanations, key=remainder)
     return [each for each in ordered if remainder(each) <= times * max(remainder(ordered[0]), least)]

@@ -1,7 +1,6 @@
 """A history beside other solvers of the suite, and beside linear DDA where no candidate change of a block steps it.
 
-The candidates, their fits and the decision are those of `beside`. What a mesh leaves beside an exact solution counts as
-noise.
+Candidates, fits and decision are those of `beside`. What a mesh leaves beside an exact solution counts as noise.
 """
 
 from __future__ import annotations
@@ -33,8 +32,8 @@ CANDIDATES = {"springs-factor", "density-factor", "young-factor", "load-factor",
 DISCOUNTS = (0.998, 0.99, 0.97, 0.94, 0.9, 0.8)
 STARTS = tuple(float(f) for f in np.geomspace(0.25, 4.0, 17))
 FEW = 4  # of a slow solver every so many of the starts
-COARSE = 8  # elements a side of the mesh on which candidates are found that a finer one then has to bear out
-BEYOND_MESH = 30.0  # times what the coarse mesh leaves of the scene's own run that it may leave of another number's
+COARSE = 8  # elements a side of the mesh that finds candidates for a finer one
+BEYOND_MESH = 30.0  # times what the coarse mesh leaves of the scene's run, that it may leave of another number's
 MESH = 5e-3  # relative L2 that a coarse mesh leaves beside the exact bar: eight linear elements a side at 0.5 ms
 SHARE = 0.05  # of what is to be explained, at most, that it may leave
 DDA = "dda"
@@ -94,7 +93,7 @@ class SolverSearch(SceneSearch):
         return columns if np.all(np.isfinite(columns)) else None
 
     def is_noise(self, columns: Array) -> bool:
-        """Whether columns leave noise as a linear motion shows it, or beside an exact solution what a mesh does."""
+        """Whether columns leave noise of a linear motion, or beside an exact solution what a mesh does."""
         is_exact = self.model and not self.solver.meshed
         least = min(MESH, SHARE * self.left(self.scene_run)) if is_exact else 0.0
         if self.left(columns) <= least:
@@ -118,14 +117,14 @@ def rivals_of(scene: Scene) -> tuple[str, ...]:
 
 
 def not_installed(scene: Scene, solvers: Iterable[str]) -> tuple[str, ...]:
-    """Return a sentence for each solver that applies to a scene and is no candidate here, for want of an extra."""
+    """Return a sentence for each solver that applies to a scene and lacks an extra here."""
     adapters = (get_solver(name) for name in solvers)
     absent = {solver.name: solver.missing(scene) for solver in adapters if solver.refusal(scene) is None}
     return tuple(f"{name} is no candidate: it {reason}" for name, reason in absent.items() if reason is not None)
 
 
 def verdict_of_solvers(scene: Scene, readings: Sequence[Reading], names: Iterable[str]) -> RunVerdict | None:
-    """Return what comes nearest of the solvers that apply to a scene, each as it is or with one thing changed."""
+    """Return the nearest of the solvers that apply to a scene, each as it is or with one thing changed."""
     searches = []
     for name in names:
         solver = get_solver(name)

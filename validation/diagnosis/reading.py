@@ -26,7 +26,7 @@ NTDDA_COLUMNS = 9  # step, time, dt, x, y, cumulative displacement, vx, vy, spee
 LEAST_ROWS = 4
 LARGEST = 1e100  # the squares of larger numbers overflow
 SAME_STEP = 1e-3  # relative; times are often printed with four digits
-MOST_STEPS = 10_000  # every explanation that is tried steps through all of them: a minute or two, and 200 MB
+MOST_STEPS = 10_000  # every explanation steps through all of them: a minute or two, and 200 MB
 LARGEST_FILE = 100_000_000  # bytes: a thousand points of so many rows
 
 
@@ -34,15 +34,15 @@ LARGEST_FILE = 100_000_000  # bytes: a thousand points of so many rows
 class Foreign:
     """A history of another program in SI units, from the first row after t = 0 on.
 
-    `time` [s] and `displacement` [m] (upwards positive) have one value a recorded row, and so has `pressure` [Pa]
-    (None if not given); `steps` [s] are the program's own time steps where it states them. The roundings are the
-    units of the last printed digit of each value, None where they are to be seen from the values. `names` are the
-    file's own names of our columns, `scale` the factors by which its numbers were multiplied.
+    Columns have one value a recorded row, None if not given; `steps` [s] are the program's own time steps where it
+    states them. The roundings are the units of the last printed digit of each value, None where they are to be seen
+    from the values. `names` are the file's own names of our columns, `scale` the factors by which its numbers were
+    multiplied.
     """
 
-    time: Array
-    displacement: Array
-    pressure: Array | None = None
+    time: Array  # [s]
+    displacement: Array  # upwards [m]
+    pressure: Array | None = None  # [Pa]
     steps: Array | None = None
     notes: tuple[str, ...] = ()
     rounding: Array | None = None  # [m]
@@ -69,7 +69,7 @@ def read(path: Path, columns: Mapping[str, str] | None = None, scale: Mapping[st
     Parameters
     ----------
     path
-        The file; a table may be separated by commas, semicolons, tabs or blanks, with comments after ``#`` or ``%``.
+        A table may be separated by commas, semicolons, tabs or blanks, with comments after ``#`` or ``%``.
     columns
         Our column name to theirs; for a measured-point file ``{"displacement": "measpoint2"}`` picks a point.
     scale
@@ -94,11 +94,11 @@ def read(path: Path, columns: Mapping[str, str] | None = None, scale: Mapping[st
     return replace(history, names=columns, scale=scale)
 
 
-# ---- tables -------------------------------------------------------------------------------------------------------
+# ---- tables ----
 
 
 def _table(text: str, path: Path, columns: Mapping[str, str]) -> tuple[dict[str, Array], dict[str, float]]:
-    """Return our columns of a table, and the factors by which those whose header names another unit become SI."""
+    """Return our columns of a table, and the factors by which those in other units become SI."""
     rows = rows_of(text)
     if not rows:
         raise InputError("must hold a history", source=path, value="an empty file")
@@ -158,15 +158,15 @@ def _place(ours: str, theirs: str, names: list[str], path: Path) -> int | None:
     )
 
 
-# ---- measured points of ntdda -------------------------------------------------------------------------------------
+# ---- measured points of ntdda ----
 
 
 def _measured_point(text: str, path: Path, columns: Mapping[str, str]) -> tuple[dict[str, Array], dict[str, float]]:
     """Return time, displacement and dt of one measured point, which are in SI.
 
-    The file gives the position with seven digits, so that a displacement keeps few of them, and its unsigned size
-    with seven digits of its own. The sign is that of the summed steps (velocity is the step's displacement over dt),
-    or, where rows are missing, that of the position relative to the start.
+    The file gives the position with seven digits, few of them of the displacement, and the displacement's unsigned size
+    with seven. The sign is that of the summed steps (velocity is the step's displacement over dt) or, where rows are
+    missing, of the position relative to the start.
     """
     points = dict(re.findall(r"(measpoint\d+)\s*=\s*\[([^\]]*)", text))
     name = columns.get(DISPLACEMENT, next(iter(points)))
@@ -203,7 +203,7 @@ def _bounded(rows: int, path: Path) -> None:
         )
 
 
-# ---- checks -------------------------------------------------------------------------------------------------------
+# ---- checks ----
 
 
 def _checked(
@@ -246,7 +246,7 @@ def _checked(
     )
 
 
-# ---- time steps ---------------------------------------------------------------------------------------------------
+# ---- time steps ----
 
 
 @dataclass(frozen=True, eq=False)
@@ -260,12 +260,7 @@ class Stepping:
 
 
 def steppings(foreign: Foreign, step: float) -> list[Stepping]:
-    """Return the ways to read the times of a history, the likeliest first.
-
-    Parameters
-    ----------
-    step
-        The scene's time step [s].
+    """Return the ways to read the times of a history of a scene's time step [s], the likeliest first.
 
     Raises
     ------

@@ -22,7 +22,7 @@ from validation.solvers.contract import Role
 from validation.solvers.registry import by_role, get_solver
 
 POSITIVE = {DISPLACEMENT: "upwards", PRESSURE: "compression"}  # what is positive in a column
-FURTHEST = 1e3  # times its first row, beyond which the history of a scene of one block is unstable
+FURTHEST = 1e3  # times its first row, beyond which the history of a block is unstable
 UNIT_POWERS = (-6, -3, -2, 2, 3, 6)  # of ten, by which a unit may be off
 FIELDS = {  # of a column and its rounding in `Foreign`
     DISPLACEMENT: ("displacement", "rounding"),
@@ -53,7 +53,7 @@ class Slip:
 
 
 def remedy_of(foreign: Foreign, slips: Sequence[Slip]) -> str:
-    """Return the option by which a history is read without its errors of sign and unit, empty without such errors."""
+    """Return the option by which a history is read without its errors of sign and unit, empty if it has none."""
     factors: dict[str, float] = {}
     for slip in slips:
         factors[slip.column] = factors.get(slip.column, foreign.scale.get(slip.column, 1.0)) / slip.factor
@@ -143,10 +143,7 @@ def slips(
 ) -> list[Reading]:
     """Return the readings without slips of sign and unit, as sizes beside the scene's own history suggest.
 
-    Parameters
-    ----------
-    furthest
-        Times its first row, beyond which the scene's own history counts as unbounded.
+    That history counts as unbounded beyond `furthest` times its first row.
     """
     of_pressure = [(1.0, 1.0)]
     if foreign.pressure is not None and np.any(foreign.pressure):
@@ -157,7 +154,7 @@ def slips(
         without_slips(foreign, stepping, {DISPLACEMENT: own, PRESSURE: other})
         for own, other in product(of_displacement, of_pressure)
     ]
-    # readings with the one that corrects least among the first two: wrong data look like wrong units
+    # the one that corrects least is among the first two: wrong data look like wrong units
     plain = min(readings, key=lambda reading: len(reading.corrected))
     others = [reading for reading in readings if reading is not plain]
     return [plain, *others] if readings[0] is plain else [others[0], plain, *others[1:]]
@@ -177,7 +174,7 @@ def without_slips(
         values, stated = (getattr(foreign, place) for place in FIELDS[name])
         if values is None:
             continue
-        # the units of the last digits as the file has them: in other units they are not seen any more
+        # units of the last digits as in the file: in other units they are not seen
         unit = last_digits(values) if stated is None else stated
         columns.append(values * sign / factor)
         units.append(unit / factor)

@@ -14,15 +14,7 @@ Keys = dict[str, float | str]
 
 
 def assignments(ids: Sequence[str], v: Variant, scene: Variant) -> str:
-    """Return the options by which a scene is stepped as the causes say; empty where its keys cannot say it.
-
-    Parameters
-    ----------
-    ids
-        Causes of the answer.
-    v, scene
-        The explanation, and the scene's own scheme and contact.
-    """
+    """Return the options by which a scene is stepped as the causes of an answer say; empty where keys cannot say it."""
     known = OF_STEP | CONTACT_METHODS | {name for name, cause in CAUSES.items() if cause.family}
     if not ids or not set(ids) <= known or set(ids) & NOT_IN_SCENES or v.contact == "mean gap" or not v.clipped:
         return ""

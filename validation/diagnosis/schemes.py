@@ -1,4 +1,4 @@
-"""The time schemes of candidate changes, each by its family and one number: names, tables and other names.
+"""The time schemes of candidate changes, each by its family and one number.
 
 The tables are those of `validation.theory.stages`. Newmark 1959; Hilber, Hughes and Taylor 1977; Wood, Bossak and
 Zienkiewicz 1980; Chung and Hulbert 1993; Bathe and Baig 2005, with rho_inf Noh and Bathe 2019.
@@ -52,7 +52,7 @@ def stages(v: Variant) -> Stages:
 
 
 def split_of(v: Variant) -> float:
-    """Return the share of the step at which a composite scheme is split; without one, that of equal matrices."""
+    """Return the share of the step at which a composite scheme is split, by default that of equal matrices."""
     return v.split or tables.equal_split(v.spectral)
 
 
@@ -73,8 +73,7 @@ def scheme_numbers(v: Variant) -> dict[str, Any]:
 def companion_split(v: Variant) -> float:
     """Return the other split with which a composite scheme is the same in linear motion, 2 q2.
 
-    Its amplification has the factors 1 - q2 z and 1 - split z / 2 below, which a split of 2 q2 exchanges; at the usual
-    split they are one.
+    Its amplification has the factors 1 - q2 z and 1 - split z / 2 below, which are one at the usual split.
     """
     share = split_of(v)
     return 1 - 2 * share * (v.spectral + 1) / (2 * share * (v.spectral - 1) + 4)

@@ -1,11 +1,11 @@
 """The search for the fewest changes that explain a history, and the one decision over what explains it.
 
-Candidates are fitted many at once over the first few periods, where no fit goes astray; what comes near there is fitted
-over more and more of the history. A change explains a history if nothing but digits and noise remains with it
+Candidates are fitted many at once over the first few periods, where no fit goes astray; what comes near is fitted over
+more and more of the history. A change explains a history if nothing but digits and noise remains with it
 (`validation.diagnosis.fits.bar`). The scene as it is comes first, then one change, then what surrounds a block, then
-two. Of those that explain, the one with the least
+two. Of those that explain, the one with the least Bayesian information criterion
 
-    n ln chi^2 + k ln n + 14 r                                             (Bayesian information criterion)
+    n ln chi^2 + k ln n + 14 r
 
 is named, chi^2 the mean square over the variances of n rows, at least 1, k the free numbers and r the changes that
 people rarely make: if no other is within 10 of it, and if the scene leaves ten times more for every change and every
@@ -41,16 +41,16 @@ MANY = 140  # candidates that are fitted further
 Start = tuple[tuple[Move, ...], Variant, tuple[str, ...]]  # causes, where their fit begins, its free numbers
 CLEAR = 10.0  # of the information criterion: odds of 150 to 1
 RARE = 14.0  # of the same, for a change that people rarely make: a thousand to one
-STANDS_OUT = 10.0  # times more that the scene must leave for each change: noise hides no other one of that size
+STANDS_OUT = 10.0  # times more that the scene must leave for each change: noise hides no other one so large
 AROUND = 5e-5  # relative L2 that moving geometry and a base leave, which every program treats in its own way
-AROUND_OPEN = 3e-4  # the same where the contact opens: each landing is late or early by what the base leaves
-NEGLIGIBLE, NEGLIGIBLE_SHARE = 1e-6, 1e-3  # relative L2 that rounded constants leave, and share of the difference
-WITHOUT_IT = 2.0  # times more that a fit leaves without what surrounds the block, or a number, if that is there at all
+AROUND_OPEN = 3e-4  # the same where the contact opens: landings are late or early by what the base leaves
+NEGLIGIBLE, NEGLIGIBLE_SHARE = 1e-6, 1e-3  # relative L2 of rounded constants, and share of the difference
+WITHOUT_IT = 2.0  # times more that a fit leaves without what surrounds the block, or a number, if that is there
 SHARE = 0.02  # of what is to be explained, at most, that they may leave
 FACTORS = ("density-factor", "young-factor", "side-factor", "springs-factor", "load-factor")
 SURROUNDINGS = ("springs-factor", "own-weight", "geometry-updated")
 MOST_ALIKE = 5  # explanations that are told where the file cannot tell them apart
-SCHEMES = [  # causes that are a time scheme, in the order in which one of several names is chosen
+SCHEMES = [  # causes that are a time scheme: of several names the first is chosen
     *("start", "velocity", "substeps", "leapfrog", "scheme", "generalised-alpha", "hht", "wbz", "theta", "composite"),
     *("symplectic-euler", "exact-in-time"),
 ]
@@ -59,8 +59,8 @@ PROBED = 40  # steps of such a run
 SAME_PROGRAM = 1e-8  # relative difference, of roundings
 OTHER_PROGRAMS = 1e-3  # of ntdda and its relatives, whose other habits stand beside it
 RAYLEIGH = ("viscous-damping", "stiffness-damping")  # C = a0 M + a1 K, which programs have together
-BASES = ((5.0, 1.0), (5.0, 1.25), (20.0, 1.0))  # mass of a base to begin with over the block's, change of softness
-MANIFOLD = 10.0  # times a factor that give the same rows: these tell that it is large or small, and no number
+BASES = ((5.0, 1.0), (5.0, 1.25), (20.0, 1.0))  # to begin with: mass of a base over the block's, change of softness
+MANIFOLD = 10.0  # times a factor that give the same rows: it is large or small, and no number
 NEUTRAL = Variant(0.5, 1.0, 1.0)  # numbers of a variant by which nothing is changed
 
 
@@ -77,14 +77,11 @@ class Explanation:
         return tuple(dict.fromkeys(move.id for move in self.moves))
 
 
-# ---- fits -----------------------------------------------------------------------------------------------------------
+# ---- fits ----
 
 
 def fitted(target: Target, scene: Variant, combos: Sequence[tuple[Move, ...]]) -> list[Explanation]:
-    """Return combinations of causes at their best, the best first.
-
-    A combination with free numbers begins at the two of its starts that come nearest.
-    """
+    """Return combinations of causes at their best, each from the nearest two of its starts, the best first."""
     n = len(target.steps)
     # of a mass on springs as soft as block and springs together
     c = target.column
@@ -124,14 +121,14 @@ def _begun(target: Target, scene: Variant, combos: Sequence[tuple[Move, ...]]) -
 
 
 def _starts(scene: Variant, combo: Sequence[Move]) -> list[Variant]:
-    """Return the variants from which the fits of a combination may begin: one number at a time."""
+    """Return the variants from which the fits of a combination may begin."""
     fixed = changed(scene, {name: value for move in combo for name, value in move.changes.items()})
     firsts = [changed(fixed, {move.free[0]: value}) for move in combo for value in move.starts]
     return firsts if firsts and len(combo) == 1 else [fixed, *firsts]
 
 
 def _leading(explanations: Sequence[Explanation]) -> list[Explanation]:
-    """Return the best few, of the same causes the best with the same free numbers."""
+    """Return the best few, one for the same causes and free numbers."""
     leading: dict[tuple[tuple[str, ...], tuple[str, ...], bool], Explanation] = {}
     for f in explanations:
         if len({ids for ids, _, _ in leading} | {f.ids}) <= KEPT:
@@ -169,7 +166,7 @@ class Verdict:
         return 0.0 if self.same else min(self.best.fit.misfit / max(self.scene_fit.misfit, 1e-300), 1.0)
 
 
-# ---- the decision ---------------------------------------------------------------------------------------------------
+# ---- the decision ----
 
 
 def decided(target: Target, scene_fit: Fit, explanations: Sequence[Explanation]) -> Verdict:
@@ -208,8 +205,7 @@ def decided(target: Target, scene_fit: Fit, explanations: Sequence[Explanation])
 def _fewer(target: Target, scene: Variant, explanations: Sequence[Explanation]) -> list[Explanation]:
     """Return explanations of several changes without each of them, fitted from where they are.
 
-    Candidates are pursued by what they leave before all of them are in: a dead band may stand in for the mass of a base
-    that is fitted later, and has then no effect.
+    Candidates are pursued before all are in: a dead band may stand in for the mass of a base that is fitted later.
     """
     nearest = {f.ids: f for f in sorted(explanations, key=lambda f: -f.fit.misfit) if len(f.moves) > 1}
     starts: list[Start] = []
@@ -228,13 +224,7 @@ def _fewer(target: Target, scene: Variant, explanations: Sequence[Explanation]) 
 
 
 def score(target: Target, deviations: Array, explanation: Explanation) -> float:
-    """Return the information criterion of an explanation.
-
-    Parameters
-    ----------
-    deviations
-        Standard deviation of each row of each column.
-    """
+    """Return the information criterion of an explanation, by the standard deviation of each row of each column."""
     remainder = target.inner(explanation.fit.residual, explanation.fit.variant)
     shares = np.ravel(target.parts(remainder) / deviations)
     n = len(shares)
@@ -246,7 +236,7 @@ def score(target: Target, deviations: Array, explanation: Explanation) -> float:
 
 
 def _is_rare(move: Move, among: int) -> bool:
-    """Whether people rarely make a cause; a factor on one column is one that they make by itself."""
+    """Whether people rarely make a cause; a factor on one column they make by itself."""
     is_frequent = CAUSES[move.id].usual or move.id in SURROUNDINGS
     return not is_frequent or (among > 1 and "displacement_factor" in move.free)
 
@@ -254,9 +244,9 @@ def _is_rare(move: Move, among: int) -> bool:
 def _canonical(
     target: Target, best: Explanation, close: Sequence[Explanation]
 ) -> tuple[Explanation, dict[tuple[str, ...], Explanation]]:
-    """Return the explanation by whose name a scheme of several names is called, and all names of it.
+    """Return the explanation that names a scheme of several names, and all of these.
 
-    Two explanations are one scheme if they give the same rows at any time step, not only at this one.
+    Two explanations are one scheme if they give the same rows at any time step.
     """
     names = {best.ids: best}
     if _scheme_alone(best) is None:
@@ -269,7 +259,7 @@ def _canonical(
 
 
 def _scheme_alone(explanation: Explanation) -> str | None:
-    """Return the id of a time scheme with fixed numbers that explains by itself, or beside a discount, else None."""
+    """Return the id of a time scheme with fixed numbers that explains alone or beside a discount, else None."""
     first, *others = explanation.ids or ("",)
     alone = first in SCHEMES and others in ([], ["gg"]) and set(explanation.fit.free) <= {"gg"}
     return first if alone else None
@@ -278,7 +268,7 @@ def _scheme_alone(explanation: Explanation) -> str | None:
 def relatives(target: Target, scene: Variant, verdict: Verdict) -> list[Explanation]:
     """Return the other explanations that give the rows of the named one themselves, without digits and noise.
 
-    They are found by fitting to its own history what explains the rows as well, and the factors of a scene in pairs.
+    What explains the rows as well, and the factors of a scene in pairs, is fitted to the history of the named one.
     """
     best = verdict.best
     if not (verdict.explained and best.moves):
@@ -287,7 +277,7 @@ def relatives(target: Target, scene: Variant, verdict: Verdict) -> list[Explanat
     both = np.array([run.displacement[target.rows, 0], run.pressure[target.rows, 0]])
     clean = Target(target.column, target.steps, target.rows, both[: len(target.recorded)])
     same = [f for f in _further(clean, verdict.others) if f.fit.misfit <= SAME_PROGRAM]
-    if set(best.ids) <= {*FACTORS}:
+    if set(best.ids) <= {*FACTORS, "height-factor"}:
         factors = {move.id: move for move in moves(target, scene) if move.id in FACTORS}
         pairs = [(factors[one], factors[two]) for one, two in itertools.combinations(factors, 2)]
         pairs = [pair for pair in pairs if set(best.ids).isdisjoint({move.id for move in pair})]
@@ -297,7 +287,7 @@ def relatives(target: Target, scene: Variant, verdict: Verdict) -> list[Explanat
 
 
 def with_same_rows(target: Target, scene: Variant, verdict: Verdict) -> Verdict:
-    """Return a verdict with what gives the rows of the named causes themselves.
+    """Return a verdict with its `relatives`.
 
     Of several factors none is named where other ones, as few, do: two numbers of a product stand for two others.
     """
@@ -309,7 +299,7 @@ def with_same_rows(target: Target, scene: Variant, verdict: Verdict) -> Verdict:
 
 
 def same_program(target: Target, one: Variant, other: Variant) -> bool:
-    """Whether two variants give the same rows at this and at other time steps."""
+    """Whether two variants give the same rows at other time steps, too."""
     for longer in PROBES:
         steps = np.full(PROBED, longer * float(target.steps[0]))
         run = histories(target.column, [one, other], steps).displacement
@@ -325,8 +315,7 @@ def accepted(target: Target, scene_fit: Fit, candidate: Fit) -> bool:
     v = candidate.variant
     if target.explained(target.inner(candidate.residual, v)):
         return True
-    # rounded constants leave that much, and the passes of an augmented Lagrangian; of the other schemes and contact
-    # methods some come as near to another one by chance
+    # rounded constants leave that much, and passes of an augmented Lagrangian; other schemes come as near by chance
     is_usual = (v.family, v.contact) == (scene_fit.variant.family, scene_fit.variant.contact) or v.contact == "rigid"
     if is_usual and _is_negligible(target, candidate, min(NEGLIGIBLE, scene_fit.misfit * NEGLIGIBLE_SHARE)):
         return True
@@ -336,15 +325,15 @@ def accepted(target: Target, scene_fit: Fit, candidate: Fit) -> bool:
 
 
 def _is_negligible(target: Target, candidate: Fit, least: float) -> bool:
-    """Whether a fit leaves next to nothing, as rounded constants do, and no row by itself that is another one."""
+    """Whether a fit leaves next to nothing, and no row by itself that is another one."""
     return candidate.misfit <= least and target.outlying(candidate.residual) is None
 
 
 def _surrounded(target: Target, candidate: Fit) -> bool:
     """Whether moving geometry or a base is seen in a history: without it the same fit leaves much more.
 
-    What surrounds a block is treated differently by every program, so that some of it may be left; a base of 1e-6 or
-    a geometry that makes no difference has explained nothing, and excuses nothing.
+    Every program treats what surrounds a block in its own way, so that some of it may be left; a base of 1e-6 or a
+    geometry that makes no difference excuses nothing.
     """
     v = candidate.variant
     base = v.base > 0 or (v.softness > 0 and benign_springs(target.column, v))
@@ -357,9 +346,9 @@ def _surrounded(target: Target, candidate: Fit) -> bool:
 def is_determined(target: Target, scene_fit: Fit, explanation: Explanation) -> bool:
     """Whether the rows determine every free number, and as another one than that by which nothing is changed.
 
-    HHT at alpha_f = 1e-7 is average acceleration, and a dashpot of nothing the scene's own contact: a number says
-    nothing if such a special case explains the rows as well, if no row changes with it, or if they leave open how
-    many times the scene's it is.
+    HHT at alpha_f = 1e-7 is average acceleration, a dashpot of nothing the scene's own contact: a number says nothing
+    if such a special case explains the rows as well, if no row changes with it, or if they leave open how many times
+    the scene's it is.
     """
     solution, scene = explanation.fit, scene_fit.variant
     v = solution.variant
@@ -384,7 +373,7 @@ def is_determined(target: Target, scene_fit: Fit, explanation: Explanation) -> b
     # beside a stiffness that is hardly felt the other numbers are hardly others
     near = [each.misfit <= SHARE * scene_fit.misfit for each in specials[len(special_cases) :]]
     starts = [(changed(v, case), _without(solution.free, case)) for case in itertools.compress(many_times, near)]
-    # not by the tolerance of a base: a heavy one hardly feels its springs, and digits tell them all the same
+    # not by the tolerance of a base: a heavy one hardly feels its springs, and digits tell them
     leaves_digits = [target.explained(target.inner(f.residual, f.variant)) for f in fit(target, starts, ROUNDS)]
     of_none = specials[: len(special_cases)]
     least = max(NEGLIGIBLE, WITHOUT_IT * solution.misfit)
@@ -393,15 +382,14 @@ def is_determined(target: Target, scene_fit: Fit, explanation: Explanation) -> b
 
 
 def _without(free: Sequence[str], names: Collection[str]) -> tuple[str, ...]:
-    """Return the free numbers that are left where some are not."""
     return tuple(name for name in free if name not in names)
 
 
 def _stands_out(target: Target, scene_fit: Fit, explanation: Explanation) -> bool:
     """Whether enough of the difference stands out of digits and noise for a cause to be named.
 
-    Where they hide a share of it, another cause that leaves less than that share would look the same: a scheme or a
-    contact method has many that are near to it, and counts twice. What surrounds a block counts as nothing.
+    Where they hide a share of it, another cause that leaves less would look the same: a scheme or a contact method has
+    many near to it and counts twice, what surrounds a block counts as nothing.
     """
     many = any(CAUSES[name].family or name in CONTACT_METHODS or name == "scheme" for name in explanation.ids)
     faults = [move for move in explanation.moves if move.id not in SURROUNDINGS]
@@ -410,7 +398,7 @@ def _stands_out(target: Target, scene_fit: Fit, explanation: Explanation) -> boo
     return explanation.fit.misfit <= min(most, STANDS_OUT**-changes) * scene_fit.misfit
 
 
-# ---- the search -----------------------------------------------------------------------------------------------------
+# ---- the search ----
 
 
 def as_it_is(target: Target, scene: Variant) -> Verdict:
@@ -421,15 +409,7 @@ def as_it_is(target: Target, scene: Variant) -> Verdict:
 
 
 def simple(target: Target, scene: Variant) -> Verdict:
-    """Return what none, one cause, or what surrounds a block explains.
-
-    Parameters
-    ----------
-    target
-        The history.
-    scene
-        The scene's own scheme, nothing added.
-    """
+    """Return what none, one cause, or what surrounds a block explains."""
     own = as_it_is(target, scene)
     if own.same:
         return own
@@ -446,9 +426,9 @@ def simple(target: Target, scene: Variant) -> Verdict:
 
 
 def twofold(target: Target, scene: Variant, before: Verdict) -> Verdict:
-    """Return what two causes explain, or one beside what surrounds the block; else what was found before."""
+    """Return what two causes explain, or one beside what surrounds the block, else the verdict before."""
     every = moves(target, scene)
-    # another time step beside another discount, two causes, both parts of Rayleigh's damping
+    # another scheme beside another discount, two causes, both parts of Rayleigh's damping
     discount = next(move for move in every if move.id == "gg" and move.free)
     of_schemes = [move for move in every if move.id == "scheme" or CAUSES[move.id].family]
     pairs: list[tuple[Move, ...]] = [(move, discount) for move in of_schemes if len(move.free) < 2]
@@ -492,7 +472,7 @@ def _surroundings(target: Target, scene: Variant) -> list[Move]:
 
 
 def _heavy(target: Target, explanations: Sequence[Explanation]) -> list[Explanation]:
-    """Return explanations by a softer base with a base that has mass."""
+    """Return explanations by a softer base with a mass of the base."""
     more = []
     for f in explanations:
         v = f.fit.variant
@@ -503,7 +483,7 @@ def _heavy(target: Target, explanations: Sequence[Explanation]) -> list[Explanat
 
 
 def _few(target: Target, scene: Variant, single: Sequence[Explanation]) -> list[Move]:
-    """Return the causes that are tried in pairs, each beginning at the scene or where it was best by itself."""
+    """Return the causes that are tried in pairs, from the scene or where each was best by itself."""
     few = []
     alone = {f.ids[0]: f.fit.variant for f in reversed(single)}
     for move in moves(target, scene):

@@ -59,30 +59,14 @@ def span(steps: Sequence[int]) -> str:
 
 @dataclass(frozen=True)
 class Subject:
-    """What a sentence is about.
+    """What a sentence is about."""
 
-    Attributes
-    ----------
-    scheme
-        The fitted scheme in words.
-    words
-        Of each cause, with its number.
-    departure
-        Where the history leaves what is expected.
-    remainder
-        What is left, in words.
-    alike
-        Causes that give the same rows.
-    model
-        The solver that gives the history, where it is another one than `dda`.
-    """
-
-    scheme: str
-    words: Mapping[str, str]
-    departure: Departure | None
-    remainder: str
-    alike: Sequence[Mapping[str, Any]] = ()
-    model: str = ""
+    scheme: str  # the fitted one, in words
+    words: Mapping[str, str]  # of each cause, with its number
+    departure: Departure | None  # where the history leaves what is expected
+    remainder: str  # what is left, in words
+    alike: Sequence[Mapping[str, Any]] = ()  # causes that give the same rows
+    model: str = ""  # the solver that gives the history, where it is another one than `dda`
 
     @property
     def where(self) -> str:

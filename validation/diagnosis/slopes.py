@@ -2,9 +2,9 @@
 
 Other programs differ from a scene in habits that go together: friction that lags, a dead band, the block's own weight
 straight down, a base that yields. Weight and springs are fitted to the first steps, where no corner has left the base,
-then to more of them, since stick and slip amplify a difference. What a base leaves beside that, which has a mass of its
-own in most programs, is told from an error by comparison: it is small, and small beside what the other law of friction
-leaves.
+then to more of them, since stick and slip amplify a difference. What a base with a mass of its own leaves beside that,
+as most programs have it, is told from an error by comparison: it is small, and small beside what the other law of
+friction leaves.
 """
 
 from __future__ import annotations
@@ -45,18 +45,18 @@ KNOWN = frozenset(
     | {features.UNILATERAL, features.DEAD_BAND}
 )
 UNIT_POWERS = (-6, -3, 3, 6)  # of ten, by which a unit of length may be off
-NEAR_POWER = 0.5  # of the exponent: what creeps and slides differs by a factor of a few from program to program
+NEAR_POWER = 0.5  # of the exponent: creep and slides differ by a factor of a few between programs
 UNIFORM = 1e-3  # relative; times are often printed with four digits
 FIRST = 1 / 50  # share of the rows in which a column goes with its load
 # of habits
 STAGES = (8, 24, 60, 150)  # steps that numbers are fitted to; in the first no corner has come back to the base
 WEIGHTS = (0.0, 1.0)  # to begin from
-SOFTNESSES = (0.0, *np.linspace(-1.5, 1.5, 13).tolist())  # ln, to begin from: springs up to 4.5 times as stiff or soft
+SOFTNESSES = (0.0, *np.linspace(-1.5, 1.5, 13).tolist())  # ln, to begin from
 WHOLE, NONE = 0.05, 0.02  # how near a fitted weight is to the block's own, or to none
 YIELDS = 5e-4  # share of the static displacement, that counts as a base
 BANDS = (0.1, 10.0, 16)  # dead bands that are tried first, over the mean penetration
 BAND_ROUNDS = 4  # times that as many are tried between the neighbours of the best: to a thousandth
-LANDING = 8  # share of the rows up to the first that departs, in which a corner is open if a landing is the reason
+LANDING = 8  # share of the rows up to the first that departs: a corner is open in it if a landing is the reason
 LANDED = 1e-3  # of the largest displacement: what a landing a step late leaves at least
 REOPENS = 1e-3  # gap at which a contact with a dead band opens, over the band, as in ntdda
 BAND_GAIN = 3.0  # times less that a dead band must leave, to be there
@@ -71,11 +71,11 @@ SPRINGS = frozenset({"springs-factor", "normal-springs-factor"})
 OF_FRICTION = frozenset({"friction-factor", "cohesion", "shear-springs-factor", "lagged-friction"})
 
 
-# ---- reading --------------------------------------------------------------------------------------------------------
+# ---- reading ----
 
 
 def search_of(scene: Scene, foreign: Foreign) -> SlopeSearch:
-    """Return a history of a block with friction beside runs of its scene, signs and a unit of both columns corrected.
+    """Return a history of a block with friction beside runs of its scene, signs and unit of length corrected.
 
     Raises
     ------
@@ -140,7 +140,7 @@ def refuse_other_scenes(scene: Scene) -> None:
         )
 
 
-# ---- runs -----------------------------------------------------------------------------------------------------------
+# ---- runs ----
 
 
 class SlopeSearch(SceneSearch):
@@ -192,7 +192,7 @@ class SlopeSearch(SceneSearch):
         return np.asarray((run - first) / sizes)
 
     def departure(self, verdict: RunVerdict) -> Departure | None:
-        """Return the first step beyond last digits of the scene's run, on what surrounds the block without fault."""
+        """Return the first step beyond last digits of the scene's run with what surrounds the block without fault."""
         if self.reading.corrected:
             return Departure(1, "offset")
         run = None
@@ -207,37 +207,21 @@ class SlopeSearch(SceneSearch):
         return Departure(int(np.argmax(np.any(apart > unit, axis=0))) + 1, "offset")
 
 
-# ---- habits of other programs ---------------------------------------------------------------------------------------
+# ---- habits of other programs ----
 
 LAW = ("contact.rules", "contact.band")
 
 
 @dataclass(frozen=True)
 class Habits:
-    """How another program runs a scene.
+    """How another program runs a scene."""
 
-    Attributes
-    ----------
-    rules
-        Its law of friction.
-    band
-        Penetration beyond which an open corner closes [m]; None for the scene's.
-    weight
-        Share of the block's own weight, straight down [-].
-    softness
-        Ln of the scene's normal stiffness over that in effect.
-    along
-        Whether the springs along the base are softer by the same factor.
-    error
-        Half width of the 95 % interval of the softness.
-    """
-
-    rules: str
-    band: float | None = None
-    weight: float = 0.0
-    softness: float = 0.0
-    along: bool = True
-    error: float = 0.0
+    rules: str  # its law of friction
+    band: float | None = None  # penetration beyond which an open corner closes [m]; None for the scene's
+    weight: float = 0.0  # share of the block's own weight, straight down [-]
+    softness: float = 0.0  # ln of the scene's normal stiffness over that in effect
+    along: bool = True  # whether the springs along the base are softer by the same factor
+    error: float = 0.0  # half width of the 95 % interval of the softness
 
     def values(self, scene: Scene) -> Values:
         """Return what of the scene is so."""
@@ -289,7 +273,7 @@ class Habits:
             causes["lagged-friction"] = None
         if self.band is not None:
             corners = search.corners(self.values(scene))
-            # of all bands that give the same rows the least: how deep an open corner is
+            # the least of all bands that give the same rows: how deep an open corner is
             causes["dead-band"] = self.band if corners is None else float(np.max(-corners[0] * (corners[1] == 0)))
         if is_base:
             causes["base-compliance"] = soft
@@ -302,7 +286,7 @@ Judged = tuple[Habits, RunExplanation]
 
 
 def habits_of(search: SlopeSearch) -> list[Judged]:
-    """Return the habits that come nearest to a history, under each law of friction till the scene's own explains it."""
+    """Return the habits nearest to a history under each law of friction, until the scene's own explains it."""
     own_rules = search.scene.contact.rules
     starts = [Habits(own_rules, None, weight, soft) for weight in WEIGHTS for soft in SOFTNESSES]
     start = min(starts, key=lambda habits: _size_of(habits, search, STAGES[0]))
@@ -319,20 +303,20 @@ def _size_of(habits: Habits, search: SlopeSearch, steps: int) -> float:
 
 
 def _nearest(start: Habits, search: SlopeSearch) -> Judged:
-    """Return habits with the weight, the springs and the dead band at which they come nearest to a history."""
+    """Return habits with weight, springs and dead band at which they come nearest to a history."""
 
     def judged(habits: Habits) -> Judged:
         return habits, search.judged(Fitted(fixed("habits", "", habits.values(search.scene)), 0.0, math.nan))
 
     def early_size(habits: Habits) -> float:
-        """Return the mean logarithm of what is left of the first stages, of which a landing spoils the last alone."""
+        """Return the mean logarithm of what is left of the first stages; a landing spoils the last alone."""
         sizes = [_size_of(habits, search, stage) for stage in STAGES[:-1]]
         return float(np.mean(np.log(np.maximum(sizes, ROUNDED**2))))
 
     before_landing = [_before_landing(replace(start, along=along), search) for along in (True, False)]
     banded = _with_band(min(before_landing, key=early_size), search)
     habits = _fitted(banded, (True, True), search, STAGES[-1])
-    if habits.band is not None:  # it may have stood in for a weight and springs that were not fitted to so many steps
+    if habits.band is not None:  # it may have stood in for weight and springs, not yet fitted to so many steps
         plain = _fitted(replace(habits, band=None), (True, True), search, STAGES[-1])
         habits = habits if _gains(habits, plain, search) else plain
     nearest_habits = judged(habits)
@@ -355,7 +339,7 @@ def _before_landing(habits: Habits, search: SlopeSearch) -> Habits:
 
 
 def _fitted(habits: Habits, free: tuple[bool, bool], search: SlopeSearch, steps: int) -> Habits:
-    """Return habits with the weight and the softness, where these are free and else none, fitted to the first steps."""
+    """Return habits with weight and softness fitted to the first steps where they are free, else none."""
     from scipy.optimize import least_squares
 
     is_free = np.array(free)
@@ -396,7 +380,7 @@ def _with_band(habits: Habits, search: SlopeSearch) -> Habits:
         nearness = [_nearness(trial, search) for trial in trials]
         best = trials[nearness.index(min(nearness))]
         longest = [share for share, near in zip(shares, nearness, strict=True) if near[0] == min(nearness)[0]]
-        # too wide a band departs where the corner lands, one that is too narrow before: it is at the least of these
+        # too wide a band departs where the corner lands, too narrow a one before: it is at the least of these
         ratio = shares[1] / shares[0]
         low = longest[0] / ratio
         high = longest[0] * ratio
@@ -404,7 +388,7 @@ def _with_band(habits: Habits, search: SlopeSearch) -> Habits:
 
 
 def _gains(banded: Habits, plain: Habits, search: SlopeSearch) -> bool:
-    """Whether habits with a dead band leave so much less of a history than others without that it is there."""
+    """Whether a dead band leaves so much less of a history that it is there."""
     steps = search.scene.time.steps
     return _size_of(plain, search, steps) >= BAND_GAIN * max(_size_of(banded, search, steps), ROUNDED)
 
@@ -417,7 +401,7 @@ def _nearness(habits: Habits, search: SlopeSearch) -> tuple[int, float]:
     return -first, float(np.linalg.norm(left))
 
 
-# ---- one number -----------------------------------------------------------------------------------------------------
+# ---- one number ----
 
 
 def candidates(scene: Scene) -> Iterator[Candidate]:
@@ -450,17 +434,11 @@ def _words_of_springs(which: str, factor: float) -> str:
     return f"the {which} are {factor:.4g} times the scene's"
 
 
-# ---- the verdict ----------------------------------------------------------------------------------------------------
+# ---- the verdict ----
 
 
 def verdict_on(search: SlopeSearch, ranked: list[Judged]) -> RunVerdict:
-    """Return what explains a history that is not its scene's: habits, one number, or a base with mass.
-
-    Parameters
-    ----------
-    ranked
-        The nearest habits under each law of friction.
-    """
+    """Return what explains a history not its scene's: habits (nearest under each law), one number, a base with mass."""
     habits, run = min(ranked, key=lambda each: (not (each[1].explains and each[0].is_usual), each[1].left))
     causes = habits.causes(search)
     words = {name: words_of(name, value or 0.0) for name, value in causes.items()}

@@ -1,8 +1,8 @@
 """The linear steps of many variants of a block at once, with the matrices of `dda`.
 
 An upright rectangle of width a and height h moves by (v, ey, ex) and, on a base of mass m_b and spring kb, by b. Its
-matrices are those of `dda.TwoBlockModel`; a variant multiplies their entries. The springs' gap g = v - (h/2) ey - b is
-summed up by itself, so that a stiff spring keeps its digits. With U = dt V and W = dt^2 A a step is
+matrices are those of `dda.TwoBlockModel`, with entries multiplied by the variant. The springs' gap g = v - (h/2) ey - b
+is summed up by itself, so that a stiff spring keeps its digits. With U = dt V and W = dt^2 A a step is
 
     x1 - x = gg U + (1/2 - alpha) W + alpha W1,     U1 = gg U + (1 - delta) W + delta W1
     M ((1 - a_m) W1 + a_m W) + dt^2 f((1 - a_f) x1 + a_f x) + dt C ((1 - a_f) U1 + a_f gg U) = dt^2 F
@@ -10,10 +10,10 @@ summed up by itself, so that a stiff spring keeps its digits. With U = dt V and 
 with the internal force f and viscous damping C = a0 M + a1 K; other schemes have other numbers in these places, and
 composite ones two such stages (`validation.diagnosis.schemes`). A step is linear in (g, s, x, U, W, n, 1), s the shear
 of the closed contact and n the gap by which the springs press at its start, as long as contact and geometry stay: such
-histories are sums of powers of one matrix, which is had by stepping the unit vectors, and cost no loop over the steps.
-Where the contact opens or the geometry moves, the same step is made one by one, as `dda.solve_unilateral` does. A
-variant that is exact in time has the exponential of its matrix. Contact methods with a force of their own take the step
-with open contact and add that force's (`validation.diagnosis.contact_force`).
+histories are sums of powers of one matrix, which is had by stepping the unit vectors. Where the contact opens or the
+geometry moves, the same step is made one by one, as `dda.solve_unilateral` does. A variant that is exact in time has
+the exponential of its matrix. Contact methods with a force of their own take the step with open contact and add that
+force's (`validation.diagnosis.contact_force`).
 """
 
 from __future__ import annotations
@@ -42,17 +42,7 @@ FALLS = np.array([1.0, 0.0, 0.0, 1.0])  # which of them have a weight: v and b
 
 
 def histories(rectangle: Rectangle, variants: Sequence[Variant], steps: Array) -> Histories:
-    """Return the histories of all variants from rest.
-
-    Parameters
-    ----------
-    rectangle
-        The block, its springs and its load.
-    variants
-        What is computed.
-    steps
-        Length of each time step [s], shape (n,).
-    """
+    """Return the histories of all variants from rest, in time steps of these lengths [s], (n,)."""
     beyond = max(
         0, *(-math.floor(v.shift) - min(0, math.floor(v.late)) for v in variants)
     )  # steps that the last rows report of
@@ -73,7 +63,7 @@ def histories(rectangle: Rectangle, variants: Sequence[Variant], steps: Array) -
 
 
 def _stepped(rectangle: Rectangle, variants: Sequence[Variant], steps: Array) -> Histories:
-    """Return what variants compute under loads that are there at once, those of one kind together."""
+    """Return what variants compute under loads that are there at once."""
     is_equal = len(steps) > 0 and float(np.ptp(steps)) <= UNEQUAL * float(steps[0])
     groups: dict[tuple[Any, ...], list[int]] = {}
     for j, v in enumerate(variants):
@@ -106,7 +96,7 @@ def _unknowns(rectangle: Rectangle, v: Variant) -> int:
 
 @dataclass(frozen=True, eq=False)
 class Equations:
-    """What a step holds apart from the motion, one of each for every variant; d unknowns."""
+    """What a step holds apart from the motion, of every variant; d unknowns."""
 
     mass: Array  # M, (variants, d, d)
     stiffness: Array  # K, (variants, d, d)
@@ -121,7 +111,7 @@ class Equations:
 
 @dataclass(eq=False)
 class Moving:
-    """Where the variants are at the start of a step: state, closed contacts, and width and height over the scene's."""
+    """Where the variants are at the start of a step: width and height are over the scene's."""
 
     state: Array
     closed: Flags
@@ -137,11 +127,10 @@ class Stepper:
         self.variants = variants
         self.d = unknowns
         self.size = 4 + 3 * unknowns
-        # where x, U and W stand in a state
+        # places in a state
         self.x = slice(2, 2 + unknowns)
         self.U = slice(2 + unknowns, 2 + 2 * unknowns)
         self.W = slice(2 + 2 * unknowns, 2 + 3 * unknowns)
-        # every number of the variants by its name, one array each
         numbers = {field.name: np.array([getattr(v, field.name) for v in variants]) for field in fields(Variant)}
         self.of = of = SimpleNamespace(**numbers)
         numbers_of_stages = np.array([stages(v) for v in variants])  # (variants, stages, numbers)
@@ -164,7 +153,6 @@ class Stepper:
         soft = 0.0 if unknowns == WITH_BASE else of.softness
         self.springs = rectangle.normal * np.exp(-soft)
         self.base_width = rectangle.width * self.wide  # at rest [m]
-        # what the scene's own matrices hold of every variant's
         model = rectangle.model
         normal, shear = dda.spring_vectors(model.block, 0)
         of_block = model.mass[PLACES, PLACES][:, None] * of.density
@@ -176,18 +164,10 @@ class Stepper:
         self.shear_springs = rectangle.shear * np.exp(-soft * of.tied) * shear[0, 3] ** 2
         self.load = of.load * rectangle.pressure * self.base_width
 
-    # ---- matrices ---------------------------------------------------------------------------------------------------
+    # ---- matrices ----
 
     def equations(self, closed: Flags, wide: Array, high: Array) -> Equations:
-        """Return the equations of a step.
-
-        Parameters
-        ----------
-        closed
-            Whether the contact is closed, (variants,).
-        wide, high
-            Width and height over the scene's, (variants,).
-        """
+        """Return the equations of a step, of width and height over the scene's; all arguments (variants,)."""
         d = self.d
         area = wide * high
         nothing = np.zeros_like(area)
@@ -219,19 +199,13 @@ class Stepper:
         """Return the equations of blocks that have not moved yet."""
         return self.equations(np.full(len(self.variants), closed), self.wide, self.high)
 
-    # ---- one step ---------------------------------------------------------------------------------------------------
+    # ---- one step ----
 
     def step(self, q: Equations, c: Any, dt: float, state: Array, middle: Array | None = None) -> Array:
         """Return the state at the end of a stage, before the contact is looked at.
 
-        Parameters
-        ----------
-        c
-            The stage, a `Stage` whose numbers are arrays of those of every variant, (variants, 1).
-        state
-            At the start of the step, (..., variants, 4 + 3 d).
-        middle
-            At the end of the first stage; None if this is the first.
+        The numbers of the stage c are arrays, (variants, 1); states are (..., variants, 4 + 3 d), `state` that at the
+        start of the step, `middle` that at the end of the first stage, None if this is the first.
         """
         x = state[..., self.x]
         U = state[..., self.U]
@@ -272,7 +246,7 @@ class Stepper:
         return np.asarray(np.linalg.inv((1 - a_m) * q.mass + (1 - a_f) * part))
 
     def stage_matrix(self, q: Equations, dt: float, stage: int) -> Array:
-        """Return the matrix of a stage, by its unit vectors: of the start and, of a second one, of the middle."""
+        """Return the matrix of a stage by unit vectors of the start and, of a second one, of the middle."""
         units = np.eye((1 + stage) * self.size)[:, None, :]
         middle = units[..., self.size :] if stage else None
         return np.moveaxis(self.step(q, self.stages[stage], dt, units[..., : self.size], middle), 0, -1)
@@ -321,7 +295,7 @@ class Stepper:
         rows[:, 1, 0] = -self.springs / self.base_width
         return rows
 
-    # ---- locked contact in equal steps ------------------------------------------------------------------------------
+    # ---- locked contact in equal steps ----
 
     def powers(self, dt: float, steps: int, parts: int) -> tuple[Array, Array]:
         """Return displacement and pressure of locked contact in equal steps, each (steps, variants)."""
@@ -358,7 +332,7 @@ class Stepper:
         pressure = force / self.base_width[:, None]
         return T, np.concatenate([observers[:, :1] @ T, pressure[:, None]], axis=1)
 
-    # ---- contact methods with a force of their own ------------------------------------------------------------------
+    # ---- contact methods with a force of their own ----
 
     def forced_step(self, dt: float) -> tuple[Array, Array, Contact, Gaps]:
         """Return the matrix of a step with open contact, what a unit force adds to its end, and what gives the force.
@@ -391,7 +365,7 @@ class Stepper:
         contact = Contact(self.springs, dashpot, self.of.restitution, self.of.clipped, push[:, 0], added_rate)
         return T, push, contact, Gaps(gap, self.gg_velocity * rate, T[:, 0], np.einsum("vi,vij->vj", rate, T))
 
-    # ---- one by one -------------------------------------------------------------------------------------------------
+    # ---- one by one ----
 
     def loop(self, steps: Array) -> Histories:
         """Return the histories of contact that opens or geometry that moves."""
@@ -502,7 +476,7 @@ def times(matrix: NDArray[np.floating[Any]], vector: NDArray[np.floating[Any]]) 
     return np.asarray((matrix @ vector[..., None])[..., 0])
 
 
-# ---- what is written ------------------------------------------------------------------------------------------------
+# ---- what is written ----
 
 
 def reported(computed: Histories, variants: Sequence[Variant], n: int) -> Histories:
@@ -522,9 +496,9 @@ def reported(computed: Histories, variants: Sequence[Variant], n: int) -> Histor
 
 
 def _ramped(values: Array, steps: float) -> Array:
-    """Return the response to loads that come on within so many steps, of the response to loads that are there at once.
+    """Return the response to loads that come on within so many steps, from that to loads that are there at once.
 
-    The load of step n is min(1, n / steps): a sum of loads that each come on at once, a share of 1 / steps every step.
+    The load of step n is min(1, n / steps): a sum of loads of 1 / steps each, one more at every step.
     """
     shares = np.diff(np.minimum(np.arange(math.ceil(steps) + 1) / steps, 1.0)) if steps > 1 else np.ones(1)
     return np.asarray(np.convolve(values, shares)[: len(values)])

@@ -1,4 +1,4 @@
-"""What a candidate change is made of: the data of an upright rectangle, and one way to compute its motion."""
+"""The data of an upright rectangle, and one way to compute its motion."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ POISSON = 0.499  # a fit may try more
 class Variant:
     """One way to compute a scene: a scheme, what a program adds, what was mistaken, and what is written of it.
 
-    The numbers of the other families than Newmark's follow from `spectral` (`validation.diagnosis.schemes`): alpha_f of
+    The numbers of families other than Newmark's follow from `spectral` (`validation.diagnosis.schemes`): alpha_f of
     HHT, theta of the theta scheme, rho_inf of the others.
     """
 
@@ -41,7 +41,7 @@ class Variant:
     base: float = 0.0  # mass of the yielding base over that of the block; 0 is a spring in series [-]
     weight: float = 0.0  # own weight, as a share of 9.81 m/s2 [-]
     gravity: float = 1.0  # over the scene's [-]
-    load: float = 1.0  # load over the scene's load [-]
+    load: float = 1.0  # over the scene's [-]
     ramp: float = 0.0  # time in which the loads come on, linearly [s]
     density: float = 1.0  # over the scene's [-]
     young: float = 1.0  # Young's modulus over the scene's [-]
@@ -56,7 +56,7 @@ class Variant:
     opens: bool = False  # the contact carries no tension
     band: float = 0.0  # penetration beyond which an open contact closes [m]
     reopening: float = 0.0  # gap beyond which a closed one opens, over the band [-]
-    hold: float = 0.0  # gap beyond which a closed contact opens, in addition: what tension it bears over stiffness [m]
+    hold: float = 0.0  # gap beyond which it opens, in addition: the tension that it bears over its stiffness [m]
     lags: Literal["", "opening", "switching"] = ""  # a contact opens, or also closes, by the gap at the step's start
     reset: bool = False  # a closing contact is sheared from the start of the step on, not from where it touched
     # formulas in which gg stands: those by the new acceleration, or the paper's by the increment of the displacement
@@ -64,7 +64,7 @@ class Variant:
     secant: bool = False  # the velocity at the end of a step is d/dt
     strain_load: float = 1.0  # share of the load in the row of ey [-]
     coupling: float = 1.0  # share of the springs' stiffness between v and ey [-]
-    kept: Literal["both", "springs", "stress"] = "both"  # forces that are carried from step to step
+    kept: Literal["both", "springs", "stress"] = "both"  # forces carried from step to step
     family: Family = "newmark"
     spectral: float = 0.0  # alpha_f of HHT, theta of the theta scheme, else rho_inf [-]
     split: float = 0.0  # share of the step at which a composite scheme is split; 0 is the usual one of its rho_inf [-]
@@ -76,7 +76,7 @@ class Variant:
     exact: bool = False  # no scheme: exact in time
     shift: float = 0.0  # steps by which the rows come late; 1/2 is the mean of two steps
     point: float = 0.0  # height of the reported point above the centroid, over half the block's height [-]
-    late: float = 0.0  # steps by which the pressure comes late; 1/2 is the mean of two steps
+    late: float = 0.0  # the same as `shift`, of the pressure alone
     pressure_factor: float = 1.0  # reported over true pressure [-]
     displacement_factor: float = 1.0  # reported over true displacement [-]
 
@@ -136,13 +136,13 @@ class Rectangle:
 
 @lru_cache(maxsize=512)
 def unit_elasticity(poisson: float, plane_strain: bool) -> Array:
-    """Return the elasticity in (ey, ex) over Young's modulus [-], Poisson's ratio within what a material may have."""
+    """Return the elasticity in (ey, ex) over Young's modulus [-], Poisson's ratio held within what a material has."""
     mu = min(max(poisson, -POISSON), POISSON)
     C = dda.Material(1.0, 1.0, mu, "plane strain" if plane_strain else "plane stress").elasticity()
     return np.asarray(C[np.ix_([1, 0], [1, 0])])
 
 
-# ---- of a scene -----------------------------------------------------------------------------------------------------
+# ---- of a scene ----
 
 
 def rectangle_of(scene: Scene) -> Rectangle | None:
@@ -165,7 +165,7 @@ def upright(scene: Scene) -> bool:
 
 
 def _opens_only(scene: Scene) -> bool:
-    """Whether a scene is not linear for its contact that opens alone, which touches and is at rest at first."""
+    """Whether only contact that opens makes a scene nonlinear, closed and at rest at first."""
     closing, opening = scene.contact.band
     at_rest = scene.contact.gap == 0 and scene.block.velocity == 0
     return set(features.of(scene)) <= OPENING and at_rest and (closing > 0 or opening == 0)

@@ -1,6 +1,3 @@
-"""Cases, their keys and execution; studies run once, kept, compared and judged.
-
-No particular study, solver or scene comes in.
-"""
+"""Cases, their keys and execution; studies run once, kept, compared and judged."""
 
 from validation.engine.run import run_study as run_study

@@ -27,17 +27,11 @@ INSTALLED = {"site-packages", "dist-packages"}  # folders of what workers have t
 
 @contextmanager
 def executor(address: str | None, solvers: Iterable[str] = ()) -> Iterator[Executor | None]:
-    """Yield the executor of the cluster at an address such as ``tcp://host:8786``; None for the machine's own cores.
+    """Yield the executor of the cluster whose scheduler is at ``tcp://host:8786``; None for the machine's own cores.
 
-    A case whose worker is lost runs again on another one; the finished ones are in the results directory already.
-
-    Parameters
-    ----------
-    address
-        That of the scheduler.
-    solvers
-        The solvers of the cases. The sources of those that a user brings from a folder which is no installation's are
-        sent to the workers, those that join later too.
+    A case whose worker is lost runs again on another one; the finished ones are in the results directory already. Of
+    `solvers`, those of the cases, the sources that a user brings from a folder which is no installation's are sent to
+    the workers, those that join later too.
 
     Raises
     ------

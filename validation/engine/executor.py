@@ -62,20 +62,12 @@ class Pending:
 def executed(
     pending: Sequence[Pending], jobs: int = 1, executor: Executor | None = None
 ) -> Generator[Ending, None, None]:
-    """Run cases and yield their rows as they end: in this process where one worker or one case is all there is.
+    """Run cases in their order and yield their rows as they end: in this process where one worker or case is all.
 
     A worker that is killed takes the pool with it. The cases that were on its workers then run once more, each in a
     process of its own, so that the one that kills its worker is a row like any other; the remainder gets a new pool.
-    Cases that take more than a worker's share of the memory follow the others, one after the other.
-
-    Parameters
-    ----------
-    pending
-        The cases, in the order in which they are begun.
-    jobs
-        Worker processes; ignored where an executor is given.
-    executor
-        That of a cluster, or None.
+    Cases that take more than a worker's share of the memory follow the others, one after the other. `jobs` counts
+    worker processes where there is no `executor`, that of a cluster.
     """
     jobs = min(jobs, len(pending))
     if executor is not None:
@@ -93,7 +85,7 @@ def executed(
             for row, history in endings:
                 del remaining[row.key]
                 yield row, history
-        # Cases are begun in their order: those that were on the workers of a lost pool are the first that remain.
+        # those that were on the workers of a lost pool are the first that remain
         for key in list(remaining)[:jobs]:
             yield run_in_own_process(remaining.pop(key))
     for task in pending:
@@ -127,7 +119,7 @@ def run_on_processes(pending: Collection[Pending], jobs: int) -> Generator[Endin
 
 
 def run_in_own_process(task: Pending) -> Ending:
-    """Run a case in a process of its own: one that kills its worker is a row like any other."""
+    """Run a case in a process of its own, so that one that kills its worker is a row like any other."""
     with _pool(1) as pool:
         try:
             return pool.submit(task.run).result()

@@ -20,28 +20,14 @@ class NothingToDerive(Exception):
 
 @dataclass(frozen=True)
 class Derived:
-    """A row that is computed from finished cases instead of by a solver; gates address it as any other.
+    """A row that is computed from finished cases instead of by a solver; gates address it as any other."""
 
-    Attributes
-    ----------
-    scene, name
-        Where gates find it: ``Gate(scene, (name,), metric, ...)``.
-    needs
-        The (case, solver) pairs that it is computed from; where one did not complete, neither does this.
-    compute
-        Function of the finished cases that returns metrics.
-    reads
-        The metrics of these cases that it reads beside their histories.
-    linear
-        Whether it has a meaning for linear scenes only; gates on it do not exist for others.
-    """
-
-    scene: str
+    scene: str  # where gates find it: ``Gate(scene, (name,), metric, ...)``
     name: str
-    needs: tuple[tuple[str, str], ...]
+    needs: tuple[tuple[str, str], ...]  # (case, solver) pairs; where one did not complete, neither does this
     compute: Callable[[Finished], Metrics]
-    reads: tuple[str, ...] = ()
-    linear: bool = False
+    reads: tuple[str, ...] = ()  # metrics of these cases, beside their histories
+    linear: bool = False  # whether it, and gates on it, exist for linear scenes only
 
 
 DerivedRows = tuple[Derived, ...]
@@ -82,13 +68,7 @@ class Finished:
             return Row("", "", scene, name, Outcome.RAISED, {}, notes=(error_text(error),))
 
     def needed_history(self, scene: str, solver: str) -> History:
-        """Return the history of a case that a derived row needs.
-
-        Raises
-        ------
-        ValueError
-            There is none.
-        """
+        """Return the history of a case that a derived row needs, or raise ValueError where there is none."""
         history = self.history(scene, solver)
         if history is None:
             raise ValueError(f"{scene}: must have a history of {solver}, got none")
@@ -119,14 +99,11 @@ def derived_row(
     cases
         The case, all of those that the row is computed from, or none.
     compute
-        Function of a case, its histories and its rows that returns metrics; where it is of the `whole`, of a list of
-        these.
+        Function of a case, its histories and its rows; where the row is of the `whole`, of a list of these.
     histories, rows
         The solvers whose histories, and whose rows, are read of each case.
     reads
         The metrics that are read of the rows.
-    whole
-        Whether the row is one of several cases.
     """
 
     def compute_row(finished: Finished) -> Metrics:

@@ -17,9 +17,6 @@ from validation.solvers.hooks import SolvingHooks
 
 
 def shadow(solver: Solver, scene: Scene, full: bool) -> History | None:
-    """Return the history of the same scene with p (1 + 1e-12), or density; None if it fails.
-
-    The density is changed where p is infinite, and that of all layers of a column.
-    """
+    """Return the history with p (1 + 1e-12), of a rigid stop or a column with its density so; None if it fails."""
     run = solver.prepare(scene.with_values(SolvingHooks.of(scene).scaled(scene, 1 + SHIFT)), full).run()
     return run.history if run.outcome is Outcome.COMPLETED else None

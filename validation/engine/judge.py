@@ -24,14 +24,9 @@ ABSENT = (Outcome.NOT_RUN, Outcome.NOT_APPLICABLE)
 
 
 def compare(finished: Finished, pairs: Sequence[tuple[str, str]] | None = None) -> Iterator[ComparisonRecord]:
-    """Yield the pair metrics of the solvers of each scene.
+    """Yield the pair metrics of the solvers of each scene, of `pairs` of solver and reference.
 
-    Parameters
-    ----------
-    finished
-        The finished cases.
-    pairs
-        Solver and reference of each comparison; None: every solver against every later one in the order of references.
+    None stands for every solver against every later one in the order of references.
     """
     solvers: dict[str, list[str]] = {}
     for scene, solver in finished.rows:
@@ -108,16 +103,7 @@ def reads(gate: Gate, derived: Mapping[tuple[str, str], Derived]) -> Iterator[tu
 def evaluate(gate: Gate, finished: Finished) -> Verdict:
     """Measure what a gate asks for and judge it.
 
-    Parameters
-    ----------
-    gate
-        Case, solvers, metric and band.
-    finished
-        The finished cases of the study, and what is derived from them.
-
-    Returns
-    -------
-    NOT RUN where a case is absent, FAIL where one did not complete, else what value and band say.
+    It is NOT RUN where a case is absent, FAIL where one did not complete, else what value and band say.
     """
     names = gate.cases
     for name in names:

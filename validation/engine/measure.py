@@ -40,18 +40,9 @@ LEAST_TOTAL = 0.004  # s of all repeats of a timed case: of many short runs one 
 
 
 def execute(case: Case, key: str, study: str) -> tuple[Row, History | None]:
-    """Run a case; whatever happens in it ends as a named outcome.
+    """Run a case, whose row is kept under `key` for a study; whatever happens in it ends as a named outcome.
 
-    Parameters
-    ----------
-    case
-        Scene, solver and what is measured.
-    key, study
-        Under which the row is kept, and the study that asks for it.
-
-    Returns
-    -------
-    The row with the metrics of the run itself, and the history where there is one.
+    Returned are the row with the metrics of the run itself, and the history where there is one.
     """
     try:
         with one_thread():
@@ -189,16 +180,14 @@ def attempt(
     contact_record: bool = False,
     watch: Callable[[Prepared], None] | None = None,
 ) -> tuple[Prepared | None, Run]:
-    """Prepare and run a scene, and turn the solver's errors into outcomes.
+    """Prepare and run a scene without a sweep, and turn the solver's errors into outcomes.
 
     Parameters
     ----------
-    solver, scene
-        The solver and a scene without a sweep.
     full
         Switch the numerical savings off.
     fields
-        File for displacement and stress fields; none is written where None.
+        File for displacement and stress fields.
     contact_record
         Keep what metrics of contact are measured from, energies included.
     watch
@@ -255,7 +244,6 @@ def _narrowed(solver: Solver, scene: Scene) -> tuple[Scene, list[str]]:
 
 def _measure(prepared: Prepared, solver: Solver, case: Case, run: Run, failed: list[str]) -> dict[str, Value]:
     """Metrics of the run itself; of its history none where that is not sound. What fails beside it is noted."""
-    # the parts of the study's measures that this run has
     measures = set(case.measures)
     if run.history is None or run.outcome is not Outcome.COMPLETED:
         measures -= {"history", "modes", "energy"}

@@ -41,19 +41,9 @@ RUN_AGAIN = (Outcome.NOT_RUN, Outcome.RAISED, Outcome.REFUSED, Outcome.TIMEOUT)
 
 @dataclass
 class StudyCases:
-    """The cases of a study with their keys, and the rows of those that have ended.
+    """The cases of a study with their keys, and the rows by key of those that have ended."""
 
-    Attributes
-    ----------
-    study
-        The study, whose names the rows get.
-    keyed
-        The cases with their keys.
-    rows
-        The rows by key.
-    """
-
-    study: Study
+    study: Study  # whose names the rows get
     keyed: Sequence[tuple[Case, str]]
     rows: dict[str, Row] = field(default_factory=dict)
 
@@ -95,20 +85,12 @@ def run_study(
 
     Parameters
     ----------
-    study
-        The declaration.
-    results
-        Where finished cases are found and kept.
     full
         Switch the numerical savings of every solver off.
     ranks
         Ranks of the solvers that can be distributed.
     jobs
         Worker processes; ignored where an executor is given.
-    executor
-        Any executor of the standard library's interface.
-    progress
-        Called with (done, total, label) after each case.
     """
     group = study_cases(study, full, ranks)
     (ended,) = run_cases([group], results, jobs=jobs, executor=executor, progress=progress)
@@ -140,19 +122,9 @@ def run_cases(
 ) -> Generator[StudyCases, None, None]:
     """Run the cases of all studies on one pool, each case once and its row kept as soon as it ends.
 
-    No worker waits for the last case of a study. Studies of timings follow the others, in this process, one case
-    after the other.
-
-    Parameters
-    ----------
-    groups
-        The studies' cases; their rows are filled in.
-    results, jobs, executor, progress
-        As in `run_study`.
-
-    Yields
-    ------
-    The cases of each study as soon as the last of them has ended.
+    The rows of `groups` are filled in, and a group is yielded as soon as its last case has ended, for which no worker
+    waits. Studies of timings follow the others, in this process, one case after the other. The other parameters are
+    those of `run_study`.
     """
     finished_rows = results.rows()
     untimed = [group for group in groups if not group.study.timed]

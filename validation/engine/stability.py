@@ -29,12 +29,7 @@ def _diagnostics(prepared: Prepared) -> Mapping[str, float]:
 def with_growth_outcome(run: Run, prepared: Prepared, scene: Scene) -> Run:
     """Return the run with the outcome that an unstable step deserves, growth seen against growth predicted.
 
-    Parameters
-    ----------
-    run
-        The run; one that ended otherwise than by its growth is returned as it is.
-    prepared, scene
-        The model, which predicts the growth of a step, and the scene that was run.
+    One that ended otherwise than by its growth is returned as it is.
     """
     if run.outcome not in (Outcome.COMPLETED, Outcome.OVERFLOW, Outcome.UNBOUNDED) or run.history is None:
         return run

@@ -23,54 +23,24 @@ def _nothing_to_say(scenes: Sequence[Scene], finished: Finished) -> Annotations:
 
 @dataclass(frozen=True)
 class Study:
-    """A declaration that the engine runs.
+    """A declaration that the engine runs; functions take what costs until it is asked for."""
 
-    Attributes
-    ----------
-    name, title, purpose
-        Name on the command line, heading and first sentence of its chapter.
-    scenes
-        Names of built-in scenes, or scenes.
-    solvers
-        Solvers for every scene; by default those of the scene's `[run]` table.
-    extra
-        Further (case name, solver) pairs, such as a run without savings.
-    gates
-        Function that returns the gates, so that listing studies computes nothing.
-    timed
-        Whether the study is one of timings, whose cases run alone and repeatedly.
-    derived
-        Function that returns the rows that are computed from finished cases.
-    data
-        Function that returns plain data which the chapter draws beside the rows, such as closed forms.
-    measures
-        What is measured on each run, see `validation.engine.case`.
-    pairs
-        The comparisons that are kept; every solver with every later one where None.
-    annotate
-        Function of the scenes and the finished cases that returns alarms and damping budgets.
-    expects
-        The outcomes beside completion that are no failure here, where how a run ends is the question.
-    long
-        Whether the gates are left to `dda-validate run`; the tests judge the others.
-    """
-
-    name: str
-    title: str
-    purpose: str
-    scenes: Sequence[str | Scene]
-    solvers: tuple[str, ...] | None = None
+    name: str  # on the command line
+    title: str  # heading of its chapter
+    purpose: str  # first sentence of its chapter
+    scenes: Sequence[str | Scene]  # built-in ones by their names
+    solvers: tuple[str, ...] | None = None  # for every scene; by default those of the scene's `[run]` table
     _: KW_ONLY
-    extra: tuple[tuple[str, str], ...] = ()
+    extra: tuple[tuple[str, str], ...] = ()  # further (case name, solver) pairs, such as a run without savings
     gates: Callable[[], tuple[Gate, ...]] = tuple
-    timed: bool = False
-    derived: Callable[[], DerivedRows] = tuple
-    data: Callable[[], Mapping[str, Any]] = dict
-    measures: tuple[str, ...] = MEASURES
-    pairs: tuple[tuple[str, str], ...] | None = None
+    timed: bool = False  # whether the study is one of timings, whose cases run alone and repeatedly
+    derived: Callable[[], DerivedRows] = tuple  # rows that are computed from finished cases
+    data: Callable[[], Mapping[str, Any]] = dict  # that the chapter draws beside the rows, such as closed forms
+    measures: tuple[str, ...] = MEASURES  # on each run, see `validation.engine.case`
+    pairs: tuple[tuple[str, str], ...] | None = None  # comparisons; every solver with every later one where None
     annotate: Callable[[Sequence[Scene], Finished], Annotations] = _nothing_to_say
-    expects: tuple[Outcome, ...] = ()
-    long: bool = False
+    expects: tuple[Outcome, ...] = ()  # beside completion, that are no failure, where how a run ends is the question
+    long: bool = False  # whether the gates are left to `dda-validate run`; the tests judge the others
 
     def cases(self, full: bool = False, ranks: int = 1) -> list[Case]:
         """Return all cases; with `full` those of every solver's full model, on `ranks` ranks where one can use them."""

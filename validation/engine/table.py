@@ -14,32 +14,18 @@ from validation.runs.row import Metrics, Value
 
 @dataclass(frozen=True)
 class TidyRow:
-    """A number of a study.
-
-    Attributes
-    ----------
-    study, scene, case
-        What it is of; the case is empty where a derived row belongs to a scene, or to none.
-    swept
-        The swept values of the case, by their keys.
-    solver
-        The solver, or the name of a derived row.
-    reference, window
-        Of a comparison, and the time that it covers [s].
-    metric, value, unit
-        The number, or the word in its place; the unit is that of the catalogue of metrics.
-    """
+    """A number of a study."""
 
     study: str
     scene: str
-    case: str
-    solver: str
+    case: str  # empty where a derived row belongs to a scene, or to none
+    solver: str  # or the name of a derived row
     metric: str
-    value: Value
-    unit: str = ""
-    reference: str = ""
-    window: float | None = None
-    swept: Mapping[str, str] = field(default_factory=dict)
+    value: Value  # the number, or the word in its place
+    unit: str = ""  # that of the catalogue of metrics
+    reference: str = ""  # of a comparison
+    window: float | None = None  # the time that it covers [s]
+    swept: Mapping[str, str] = field(default_factory=dict)  # the swept values of the case, by their keys
 
 
 def tidy(results: Results, manifest: Manifest) -> Iterator[TidyRow]:

@@ -38,13 +38,7 @@ def _location(name: str) -> Path | None:
 
 
 def check() -> None:
-    """Refuse to go on with packages that are not ours.
-
-    Raises
-    ------
-    ImportError
-        A folder of the user's shadows one of them.
-    """
+    """Raise ImportError where a folder of the user's shadows one of our packages."""
     sentence = shadowed()
     if sentence is not None:
         raise ImportError(sentence)

@@ -54,7 +54,7 @@ class Change:
 
     @property
     def worse(self) -> bool:
-        """Whether the gate fails or is no longer run, and did better before; a new gate that fails, a wider band."""
+        """Whether the gate fails or is not run and did better before, is new and fails, or has a wider band."""
         if self.widened:
             return True
         if self.after == ABSENT:
@@ -118,7 +118,7 @@ def changes(before: Iterable[Record], after: Iterable[Record]) -> list[Change]:
 
 
 def _said(v: Record | None) -> tuple[str, object]:
-    """Verdict and value of a gate, absent and nothing where it is not there."""
+    """Verdict and value of a gate that may be absent."""
     return (ABSENT, None) if v is None else (v["verdict"], v["value"])
 
 
@@ -129,7 +129,7 @@ def _band(v: Record | None) -> Edges | None:
 def against(
     baseline: Path | str | Iterable[Record], records: Sequence[Record], studies: Iterable[str] | None = None
 ) -> list[Change]:
-    """Return what changed since a baseline in the studies that were run (those of the records unless they are given).
+    """Return what changed since a baseline in the studies that were run, by default those of the records.
 
     A study that was run and has no gate left has lost all of the baseline's.
     """
@@ -145,7 +145,7 @@ def counted(records: Iterable[VerdictRecord]) -> str:
 
 
 def markdown(records: Sequence[VerdictRecord], since: Sequence[Change] | None = None) -> str:
-    """Return a summary: counts, what failed, what was not run, and what changed since a baseline."""
+    """Return counts, what failed, what was not run, and what changed since a baseline."""
     lines = [f"## dda-validation: {counted(records)}", ""]
     lines += _table(("study", *WORDS), _rows_of_studies(records))
     for word in ("FAIL", "NOT RUN"):

@@ -42,8 +42,6 @@ class Gate:
     pair
         Solver and reference; a single solver where the metric is compared with a number only.
         A metric of one run, given a pair, is compared as value / reference - 1.
-    metric
-        Metric id.
     low, high
         Edges of the band, both inside.
     reason
@@ -51,7 +49,7 @@ class Gate:
     reference_kind
         One of `KINDS`.
     reference_uncertainty
-        Uncertainty of the reference in the metric's own unit; a narrower band is refused.
+        In the metric's own unit; a narrower band is refused.
     until
         Length of the time window [s]; the whole history where None.
     against
@@ -91,7 +89,7 @@ class Gate:
 
     @property
     def target(self) -> float:
-        """What the band is about: zero where that is inside or all but inside, as of errors, else its middle."""
+        """Middle of the band; zero, as of errors, where that is inside or all but inside."""
         of_error = self.high >= 0 and self.low <= NIL * self.high
         return 0.0 if of_error else (self.low + self.high) / 2
 
@@ -129,7 +127,7 @@ class Verdict:
     why: str = ""
 
     def record(self, study: str) -> VerdictRecord:
-        """Return the verdict as plain data, rounded well above the last bits and without seconds."""
+        """Return the verdict as plain data, rounded well above the last bits."""
         g = self.gate
         value = settled(self.value) if isinstance(self.value, float) else self.value
         margin = g.margin(self.value) if isinstance(self.value, float) else None
@@ -152,7 +150,7 @@ class Verdict:
 
 
 def _edge(value: float) -> float:
-    """Return an edge of a band without its last bits, which depend on the processor; JSON knows no infinity."""
+    """Return an edge of a band as JSON takes it, without last bits, which depend on the processor."""
     return max(-LARGEST, min(LARGEST, significant(value, 12)))
 
 
@@ -166,7 +164,7 @@ def judge(gate: Gate, value: Value) -> Verdict:
 
 
 def settled(value: float) -> float:
-    """Round as `rounded` does, with zero for all that is rounding: alike on every processor."""
+    """Round as `rounded` does; what is rounding is zero, alike on every processor."""
     return 0.0 if abs(value) <= ROUNDING else rounded(value)
 
 

@@ -1,6 +1,3 @@
-"""What is measured on histories and modes.
-
-Functions of what a run has reported; nothing that would run a solver comes in.
-"""
+"""What is measured on histories and modes; nothing here runs a solver."""
 
 from validation.metrics.values import ratio as ratio

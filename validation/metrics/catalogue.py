@@ -71,25 +71,25 @@ CATALOGUE = SOLO | PAIRS
 
 
 def words_of(metric: str) -> str:
-    """Return what a person reads instead of the id of a metric; one that is not in the catalogue goes by its name."""
+    """Return what a person reads instead of the id of a metric, the id where the catalogue lacks it."""
     entry = ALL.get(metric)
     return metric if entry is None else entry.words
 
 
 def in_words(metric: str, value: Value) -> Value:
-    """Return the value of a metric, where it is undefined why: "not settled", "never opens"."""
+    """Return the value of a metric; where it is undefined, why: "never opens"."""
     entry = ALL.get(metric)
     return entry.undefined if entry is not None and value == UNDEFINED else value
 
 
 def is_count(metric: str) -> bool:
-    """Whether a metric counts something: its zero is none, and not a small number."""
+    """Whether a metric counts something: its zero is none, not a small number."""
     entry = CATALOGUE.get(metric)
     return metric in COUNTS or (entry is not None and entry.unit == "step")
 
 
 def measured_by(measures: Collection[str], only: Collection[str] | None = None) -> list[Metric]:
-    """Return the metrics of one run that the parts of a study's `measures` ask for, or those of them that are named."""
+    """Return the metrics of one run that the parts of a study's `measures` ask for, of them those named in `only`."""
     metrics = [metric for metric in (*SOLO.values(), KIND) if metric.measure in measures]
     return metrics if only is None else [metric for metric in metrics if metric.id in only]
 
@@ -103,15 +103,8 @@ def solo(
 
 
 def pair(metric: str, history: History, reference: History, run: Metrics | None = None) -> Value:
-    """Return a metric between a run and its reference, on their common steps.
+    """Return a metric of `PAIRS` between a run and its reference, on their common steps.
 
-    Parameters
-    ----------
-    metric
-        An id of `PAIRS`.
-    history, reference
-        The run and what it is compared with.
-    run
-        Metrics of the run, for the static values of `.scaled`.
+    `run` holds metrics of the run, for the static values of `.scaled`.
     """
     return PAIRS[metric].function(Pairing(history, reference, run or {}))

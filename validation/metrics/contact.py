@@ -30,7 +30,7 @@ def first(m: Measurable, opens: bool) -> Value:
 
 
 def second(m: Measurable, opens: bool) -> Value:
-    """Time at which a corner opens, or closes, for the second time [s]; corners that switch together count as one."""
+    """Time at which a corner opens, or closes, again [s]; corners that switch together count as one."""
     if m.switches is None:
         return NOT_REPORTED
     times = sorted({switch.time for switch in m.switches if switch.opens is opens})
@@ -46,7 +46,7 @@ def state_changes(m: Measurable) -> Value:
 
 
 def reported(m: Measurable, part: Part) -> Value:
-    """Return a part of what the contact did, not reported where there is no record of it."""
+    """Return a part of what the contact did, not reported where there is no record."""
     return NOT_REPORTED if m.contact is None or not len(m.contact.time) else part(m.contact)
 
 
@@ -94,7 +94,7 @@ def landing(record: ContactRecord) -> tuple[float, Array]:
 
 
 def of_rebounds(record: ContactRecord, part: str) -> Value:
-    """Return the restitution of the first of the single contacts, their mean or the greatest one.
+    """Return the restitution of single contacts: the first, their mean or the greatest.
 
     Undefined where none begins and ends in the run.
     """
@@ -140,7 +140,7 @@ def input_energy(record: ContactRecord) -> Value:
 
 
 def rise(record: ContactRecord) -> Value:
-    """Greatest total energy above that at the start, over the energy that start and loads give."""
+    """Greatest total energy above that at the start, over what start and loads give."""
     energy = total(record)
     if energy is None:
         return NOT_REPORTED
@@ -150,7 +150,7 @@ def rise(record: ContactRecord) -> Value:
 
 
 def switching(record: ContactRecord) -> Value:
-    """Energy gained by opening and closing, over the energy that start and loads give; negative where it is lost."""
+    """Energy gained by opening and closing, negative where lost, over that of start and loads."""
     lost = record.energies.get(LOST[2])
     if lost is None:
         return NOT_REPORTED

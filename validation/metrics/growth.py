@@ -1,4 +1,4 @@
-"""Growth of a history, and what the largest eigenvalue of a step makes of a run."""
+"""Growth of a history, and what the largest eigenvalue of a step makes of it."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def diagnosed(m: Measurable, key: str) -> Value:
 
 
 def kind_of_run(m: Measurable) -> Value:
-    """Return the name of what the predicted spectral radius makes of the run."""
+    """Return the name of the predicted `Stability` of the run."""
     radius = diagnosed(m, "predicted_radius")
     return str(kind(radius, m.outcome)) if isinstance(radius, float) else NOT_REPORTED
 
@@ -52,7 +52,7 @@ def kind(radius: float, outcome: Outcome) -> Stability:
 
 
 def growth(values: Array) -> float | None:
-    """Return the factor a step that a history grows by in the end, or None where it has not grown by `DEVELOPED`.
+    """Return the factor a step by which a history grows in the end, None where it has not grown by `DEVELOPED`.
 
     The last values are powers of a few roots; the largest is found by Prony's method on their scaled Hankel matrix.
     """
@@ -95,7 +95,7 @@ def drift(m: Measurable) -> Value:
     """Return the largest relative change of a mode's energy between the first and the last steps of a run.
 
     The amplitudes of all modes are fitted, at the numerical frequencies of the step, to each column about its static
-    value; a mode counts in the column that shows it best. Undefined for short runs and for modes that do not turn.
+    value; a mode counts in the column that shows it best. Undefined for short runs and modes that do not turn.
     """
     if not m.modes or not m.static:
         return NOT_REPORTED

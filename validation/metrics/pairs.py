@@ -38,7 +38,7 @@ def relative_max(value: Array, reference: Array) -> Value:
 
 
 def compared(p: Pairing, quantity: str, part: str) -> Value:
-    """Return the error of a column over that of the reference, its root mean square ("l2") or its maximum."""
+    """Return the error of a column over the reference, its root mean square ("l2") or its maximum."""
     both = p.columns(QUANTITIES[quantity])
     if both is None:
         return NOT_REPORTED

@@ -63,33 +63,19 @@ def poles(signal: Array, step: float, order: int | None = None, tolerance: float
 
 @dataclass(frozen=True)
 class Swing:
-    """The value about which a signal swings, and its strongest oscillating pole, if any.
-
-    Attributes
-    ----------
-    misfit
-        What the powers leave of the samples, over the largest value [1].
-    samples
-        How many samples they are fitted to.
-    """
+    """The value about which a signal swings, and its strongest oscillating pole, if any."""
 
     static: float | None
     pole: Pole | None
-    misfit: float = math.inf
-    samples: int = 0
+    misfit: float = math.inf  # what the powers leave of the samples, over the largest value [1]
+    samples: int = 0  # to which they are fitted
 
 
 def swing(signal: Array, step: float, order: int = 7) -> Swing:
     """Return the centre of a signal and its strongest oscillation, of which noise may be a part.
 
-    Parameters
-    ----------
-    signal
-        Samples at equal steps, shape (steps,); its static value is a power 1^n among the others.
-    step
-        Time step [s].
-    order
-        Number of powers: a constant and three modes.
+    Samples are at equal steps [s], shape (steps,). The static value is a power 1^n among the `order` powers, by default
+    a constant and three modes.
     """
     size = float(np.max(np.abs(signal), initial=0.0))
     y, thin = _window(signal, order, 1e-11)
@@ -112,9 +98,9 @@ def swing(signal: Array, step: float, order: int = 7) -> Swing:
 def _window(signal: Array, order: int | None, tolerance: float) -> tuple[Array, int]:
     """Return the samples that are used, and how many steps they are apart.
 
-    The first samples, every one of them; only where the strongest power of these turns slowly, every k-th one over a
-    longer time, after a low-pass filter: a filter leaves the powers z^n of a signal as they are and changes their
-    coefficients only, and what would turn by more than pi between two samples, and be read as a slower power, is gone.
+    The first samples, every one of them; only where their strongest power turns slowly, every k-th one over a longer
+    time, after a low-pass filter. A filter leaves the powers z^n of a signal as they are and changes their coefficients
+    only; what would turn by more than pi between two samples, and be read as a slower power, is gone.
     """
     y = signal[:LONGEST]
     longest_stride = len(signal) // LONGEST
@@ -129,7 +115,7 @@ def _window(signal: Array, order: int | None, tolerance: float) -> tuple[Array, 
 
 
 def _low_pass(signal: Array, thin: int) -> Array:
-    """Return every k-th sample of a signal whose powers up to `TURN` between these pass and those beyond pi do not."""
+    """Return every k-th sample of a signal, its powers up to `TURN` between these kept and those beyond pi gone."""
     from scipy.signal import fftconvolve, firwin, kaiserord
 
     passes = TURN / np.pi  # of pi between two of the samples that are left
@@ -140,7 +126,7 @@ def _low_pass(signal: Array, thin: int) -> Array:
 
 
 def _fit(y: Array, order: int | None, tolerance: float) -> tuple[NDArray[np.complex128], NDArray[np.complex128], float]:
-    """Return the powers z, their coefficients c and the largest misfit."""
+    """Return powers z, coefficients c and the largest misfit."""
     half = len(y) // 2
     u, s, _ = np.linalg.svd(np.lib.stride_tricks.sliding_window_view(y, half), full_matrices=False)
     rank = order if order is not None else max(1, int(np.sum(s > tolerance * s[0])))

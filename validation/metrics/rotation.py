@@ -10,7 +10,7 @@ from validation.runs.history import Array, History
 
 
 def crossing(time: Array, values: Array, level: float) -> float:
-    """Return when values first exceed a level, on straight lines between the steps [s]; NaN where they never do."""
+    """Return when values first exceed a level, on straight lines between steps [s]; NaN if never."""
     above = np.flatnonzero(values > level)
     if not len(above) or above[0] == 0:
         return math.nan
@@ -20,7 +20,7 @@ def crossing(time: Array, values: Array, level: float) -> float:
 
 
 def landing(time: Array, gap: Array) -> float:
-    """Return when a gap closes, on the straight line of the last two steps that it is open in [s]; NaN if never."""
+    """Return when a gap closes, on the straight line of its last two open steps [s]; NaN if never."""
     closed = np.flatnonzero(gap <= 0)
     if not len(closed) or closed[0] < 2:
         return math.nan

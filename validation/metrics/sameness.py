@@ -25,12 +25,10 @@ def is_identical(history: History, other: History) -> bool:
 
 
 def largest_difference(history: History, again: History) -> tuple[str, float]:
-    """Return the column in which two runs of one scene differ most, and by how much.
+    """Return the column in which two runs of one scene differ most, and ||again - history|| / ||history|| [1].
 
-    Returns
-    -------
-    Name of the column and ||again - history|| / ||history|| [1]; an empty name and 0 where none differs by more than
-    rounding, and infinity where one run lacks the column or has another length.
+    An empty name and 0 where none differs by more than rounding; infinity where one run lacks the column or has another
+    length.
     """
     worst = ("", 0.0)
     for name in sorted({*history.columns, *again.columns}):

@@ -25,6 +25,7 @@ from validation.problems.stated import Document, checked, read_document
 from validation.runs.defects import Defects, Place
 from validation.runs.files import atomic_directory
 from validation.runs.history import PRESSURE, History
+from validation.runs.progress import Progress
 from validation.scenes.unknown import did_you_mean
 from validation.solvers.foreign import factor, force
 from validation.solvers.history_table import AS_NAMED, HeaderNames, read_table
@@ -36,38 +37,19 @@ UNANSWERED = "must hold the table of a problem"
 DEEPEST = 4  # folders between the one that is named and a folder of answers
 TABLE = ".csv"
 FILLED_IN = {name: blank for name, blank in ANSWERS_TEMPLATE.items() if name not in CHOSEN}
-Progress = Callable[[int, int, str], None]
 
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """An answer to a problem, or why there is none.
+    """An answer to a problem, or why there is none."""
 
-    Attributes
-    ----------
-    name
-        Of the problem.
-    problem
-        The problem; None where it is one of an earlier pack.
-    history
-        The columns that are reported; None where there is no answer to judge.
-    status
-        In place of a judgement where there is no history: stale, NOT RUN, not applicable, or FAIL.
-    reason
-        Why so.
-    warnings
-        What makes a verdict worth less, in sentences.
-    seconds
-        What a run took; None where nothing was run.
-    """
-
-    name: str
-    problem: Problem | None
-    history: History | None
-    status: Status | None = None
-    reason: str = ""
-    warnings: tuple[str, ...] = ()
-    seconds: float | None = None
+    name: str  # of the problem
+    problem: Problem | None  # None where it is one of an earlier pack
+    history: History | None  # the columns that are reported; None where there is no answer to judge
+    status: Status | None = None  # where there is no history: stale, NOT RUN, not applicable, or FAIL
+    reason: str = ""  # of that status
+    warnings: tuple[str, ...] = ()  # what makes a verdict worth less, in sentences
+    seconds: float | None = None  # that a run took; None where nothing was run
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +81,7 @@ def folder_name(text: str) -> str:
     return re.sub(r"[^a-z0-9.+]+", "-", text.lower()).strip("-.")
 
 
-# ---- reading --------------------------------------------------------------------------------------------------------
+# ---- reading ----
 
 
 def read_sets(
@@ -108,18 +90,11 @@ def read_sets(
     progress: Progress = lambda number, total, label: None,
     own: Mapping[str, Problem] | None = None,
 ) -> list[AnswerSet]:
-    """Read all folders of answers at or below a directory.
+    """Read all folders of answers at or at most `DEEPEST` levels below a directory.
 
-    Parameters
-    ----------
-    root
-        A folder of answers, or a directory of such, at most `DEEPEST` levels below it.
-    in_layout
-        Whether each has to lie in its own place, `PROGRAM/VERSION/SETTINGS`.
-    progress
-        Told before each table: how many are read, of how many, and which is next.
-    own
-        Problems that are answered, by the names of their tables; those of the pack by default.
+    `in_layout` says whether each has to lie in its own place, `PROGRAM/VERSION/SETTINGS`. `progress` is told before
+    each table how many are read. `own` are the problems that are answered, by the names of their tables; those of the
+    pack by default.
 
     Raises
     ------
@@ -182,15 +157,15 @@ def _read_set(
     pack = document.content.get("pack")
     if pack is not None and pack not in packs():
         rule = f"must be one of {', '.join(packs())}, this pack and earlier ones"
-        defects.add(document.place(("pack",)), rule, field="pack", value=repr(pack), advice=EXPORT)
+        defects.add(document.place, rule, field="pack", value=repr(pack), advice=EXPORT)
         pack = None
     data = checked(document, AnswersData, FILLED_IN, defects)
     for field in ("program", "version"):
         text = document.content.get(field)
         if isinstance(text, str) and text.strip() and not folder_name(text):
             rule = "must hold a letter or digit of ASCII, for the name of its folder"
-            defects.add(document.place((field,)), rule, field=field, value=repr(text))
-    # Tables of an unknown pack are checked by this one, so that all defects are told at once.
+            defects.add(document.place, rule, field=field, value=repr(text))
+    # tables of an unknown pack are checked by this one, so that all defects are told at once
     answers = _answers(folder, document, pack or PACK, own, defects, step)
     if len(defects) == before and not answers and own is None:
         defects.add(Place(folder), UNANSWERED, value="none that is filled in")
@@ -230,7 +205,7 @@ def _answers(
             continue
         step(name)
         posed = problem(name) if own is None else own[name]
-        columns = _reported(document, ("not_reported", name), withheld_by_name.get(name, []), posed, defects)
+        columns = _reported(document, f"not_reported.{name}", withheld_by_name.get(name, []), posed, defects)
         known_defects = len(defects)
         history = read_answer(path, posed, defects, columns) if columns else None
         if is_later and (history is not None or len(defects) > known_defects):
@@ -240,7 +215,7 @@ def _answers(
     if later:
         more = f" and {len(later) - 1} more" if len(later) > 1 else ""
         rule = f"must be {PACK}, from which on the pack holds {later[0]}{more}"
-        defects.add(document.place(("pack",)), rule, field="pack", value=repr(pack))
+        defects.add(document.place, rule, field="pack", value=repr(pack))
     names = [path.name for path in tables]
     for field in ("not_reported", "step_s"):
         # Of a folder that answers more than is asked all is stated.
@@ -249,25 +224,21 @@ def _answers(
     return tuple(answers[name] for name in order if name in answers)
 
 
-def _reported(
-    document: Document, address: tuple[str, ...], withheld: object, posed: Problem, defects: Defects
-) -> list[str]:
+def _reported(document: Document, field: str, withheld: object, posed: Problem, defects: Defects) -> list[str]:
     """Return the columns of the history that a table has to hold; none, and the defects, where that is not clear."""
     if not isinstance(withheld, Sequence) or isinstance(withheld, str):  # a defect of its type, which is known
         return []
     names = [posed.named(column) for column in posed.columns]
-    field = ".".join(address)
     before = len(defects)
     for i, name in enumerate(withheld):
-        place = document.place((*address, i))
         if name not in names:
-            defects.add(place, f"must be among {', '.join(names)}", field=field, value=repr(name))
+            defects.add(document.place, f"must be among {', '.join(names)}", field=field, value=repr(name))
         elif name in withheld[:i]:
-            defects.add(place, "must not repeat a column", field=field, value=repr(name))
+            defects.add(document.place, "must not repeat a column", field=field, value=repr(name))
     remaining = [column for column in posed.columns if posed.named(column) not in withheld]
     if not remaining:
         rule = "must leave a column to judge"
-        defects.add(document.place(address), rule, field=field, value=f"all of {', '.join(names)}")
+        defects.add(document.place, rule, field=field, value=f"all of {', '.join(names)}")
     return remaining if len(defects) == before else []
 
 
@@ -277,12 +248,11 @@ def _check_problems(
     """Add a defect for each problem that a field names and no table answers."""
     stated = document.content.get(field)
     for name in stated if isinstance(stated, dict) else ():
-        place = document.place((field, name), of_key=True)
         if name not in known:
             rule = f"{name}: must be among {', '.join(known)}"
-            defects.add(place, rule, field=field, advice=did_you_mean(name, known))
+            defects.add(document.place, rule, field=field, advice=did_you_mean(name, known))
         elif name + TABLE not in tables:
-            defects.add(place, f"{name}: must have a table {name}{TABLE}", field=field, value="no such file")
+            defects.add(document.place, f"{name}: must have a table {name}{TABLE}", field=field, value="no such file")
 
 
 def _check_once(sets: Sequence[AnswerSet], defects: Defects) -> None:
@@ -299,12 +269,7 @@ def _check_once(sets: Sequence[AnswerSet], defects: Defects) -> None:
 def read_tables(place: Path, problems: Sequence[Problem], header: HeaderNames = AS_NAMED) -> AnswerSet:
     """Return the answers of a table, or of a directory with a table ``PROBLEM.csv`` each, of which nothing is stated.
 
-    `header` says what the tables call their columns.
-
-    Raises
-    ------
-    DefectsError
-        Something is wrong; every defect of all files is named.
+    `header` says what the tables call their columns. Defects are raised as by `read_sets`.
     """
     if not place.is_dir() and len(problems) != 1:
         rule = "must name the one problem or scene that a table answers"
@@ -331,7 +296,7 @@ def stated_by(program: str, **fields: Any) -> AnswersData:
     return AnswersData.model_construct(**{**nothing, **plain, "program": program, **fields})
 
 
-# ---- one table ------------------------------------------------------------------------------------------------------
+# ---- one table ----
 
 
 def read_answer(
@@ -343,18 +308,8 @@ def read_answer(
 ) -> History | None:
     """Return the answer that a table holds; None where it has defects, or where it is blank.
 
-    Parameters
-    ----------
-    path
-        Of the text file.
-    posed
-        The problem that it answers.
-    defects
-        Which takes what is wrong.
-    columns
-        Those that the table has to hold; all of the problem by default.
-    header
-        What the table calls its columns.
+    The table has to hold `columns`, all of the problem by default, which it calls as `header` says; `defects` takes
+    what is wrong.
     """
     required = posed.columns if columns is None else columns
     units = {column: posed.unit(column) for column in (*required, *posed.further_columns)}
@@ -386,7 +341,7 @@ def _differences(history: History, posed: Problem) -> Iterator[tuple[str, str]]:
             yield column, difference.replace(column, "it", 1)
 
 
-# ---- keeping --------------------------------------------------------------------------------------------------------
+# ---- keeping ----
 
 
 def keep(sets: Sequence[AnswerSet], layout: Path) -> list[Path]:

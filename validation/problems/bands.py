@@ -36,24 +36,12 @@ DRIVE = "what drives it"  # the datum of a motion that no other one changes
 
 @dataclass(frozen=True, eq=False)
 class Band:
-    """The band [0, `high`] of the relative L2 error of a column.
+    """The band [0, `high`] of the relative L2 error of a column."""
 
-    Attributes
-    ----------
-    high
-        Upper edge [1].
-    datum
-        The datum of which one per cent changes the column most.
-    rows
-        Rows of the exact motion that are judged.
-    until
-        Instant of the last of them [s].
-    """
-
-    high: float
-    datum: str
-    rows: int
-    until: float
+    high: float  # upper edge [1]
+    datum: str  # of which one per cent changes the column most
+    rows: int  # of the exact motion that are judged
+    until: float  # instant of the last of them [s]
 
     @property
     def reason(self) -> str:
@@ -133,13 +121,7 @@ def changed_scenes(scene: Scene) -> dict[str, Scene]:
 
 
 def standard(problem: Problem) -> Standard:
-    """Return what answers to a problem are held against; computed once a scene.
-
-    Raises
-    ------
-    InputError
-        An exact motion could not be computed.
-    """
+    """Return what answers to a problem are held against, computed once a scene; InputError without an exact motion."""
     return _standard(definition_of(problem.scene))
 
 

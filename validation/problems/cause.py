@@ -183,33 +183,15 @@ def _moved(
 
 @dataclass(frozen=True)
 class Cause:
-    """Why an answer fails: ids and numbers, and one line; no id where it is not explained.
+    """Why an answer fails; no id where it is not explained."""
 
-    Attributes
-    ----------
-    sentence
-        One line.
-    ids
-        Of the causes that are there together.
-    values
-        Their numbers.
-    alike
-        Sentences of other causes that give the same rows.
-    left
-        What the cause leaves of the answer, over the band, in the worst column [1].
-    base
-        The scheme, where that is the cause.
-    passing_step
-        Halved step of that scheme at which it passes [s]; None where none was found.
-    """
-
-    sentence: str = NOT_EXPLAINED
-    ids: tuple[str, ...] = ()
-    values: dict[str, float] = field(default_factory=dict)
-    alike: tuple[str, ...] = ()
-    left: float = math.inf
-    base: Base | None = None
-    passing_step: float | None = None
+    sentence: str = NOT_EXPLAINED  # one line
+    ids: tuple[str, ...] = ()  # of the causes that are there together
+    values: dict[str, float] = field(default_factory=dict)  # their numbers
+    alike: tuple[str, ...] = ()  # sentences of other causes that give the same rows
+    left: float = math.inf  # of the answer by the cause, over the band, in the worst column [1]
+    base: Base | None = None  # the scheme, where that is the cause
+    passing_step: float | None = None  # halved step of that scheme at which it passes [s]; None where none was found
 
     @property
     def would_tell(self) -> str:
@@ -356,7 +338,7 @@ class Search:
         return math.inf if columns is None else self.runs.apart(self.answer, columns)
 
 
-# ---- words ----------------------------------------------------------------------------------------------------------
+# ---- words ----
 
 
 def _scheme_sentence(base: Base, scene: Scene) -> str:
@@ -420,7 +402,7 @@ def _rank(cause: Cause) -> tuple[int, float]:
     return max(USUAL.index(name) if name in USUAL else len(USUAL) for name in cause.ids), cause.left
 
 
-# ---- compare --------------------------------------------------------------------------------------------------------
+# ---- compare ----
 
 
 def compared(scene: Scene, history: History) -> Cause | None:

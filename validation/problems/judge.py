@@ -11,48 +11,28 @@ from validation.errors import InputError
 from validation.gates.gate import Status
 from validation.metrics.pairs import relative_l2
 from validation.problems.bands import Band, Standard, standard
-from validation.problems.numbered import measured
+from validation.problems.numbered import ROUNDING, measured
 from validation.problems.problem import Problem
 from validation.problems.quantities import Quantity, quantities
 from validation.runs.history import Array, History
 
-ROUNDING = 1e-9  # relative, of an edge: what one per cent of a datum changes is inside
 SAME_INSTANT = 1e-3  # of a step: times are often printed with few digits
 
 
 @dataclass(frozen=True)
 class Criterion:
-    """A column or a number of an answer that is judged.
-
-    Attributes
-    ----------
-    name
-        Of the column or the number.
-    status
-        PASS or FAIL, or why it is neither.
-    error
-        Of a column ||x - exact|| / ||exact|| over the judged rows, of a number the error as a share of its scale [1];
-        infinite where it is not finite or cannot be measured, None if not judged.
-    allowed
-        Upper edge of the band of the error, whose lower edge is 0 [1]; None where the column cannot be judged.
-    until
-        Instant up to which it is judged [s].
-    reason
-        Why the band ends there, or why the column is not judged.
-    within
-        Instant up to which its error is within what is allowed [s]: it would pass, were it exact from there on.
-    datum
-        The datum of which one per cent sets the band of a column; empty of a number.
-    """
+    """A column or a number of an answer that is judged."""
 
     name: str
-    status: Status
+    status: Status  # PASS or FAIL, or why it is neither
+    # Of a column ||x - exact|| / ||exact|| over the judged rows, of a number the error as a share of its scale [1];
+    # infinite where it is not finite or cannot be measured, None if not judged.
     error: float | None
-    allowed: float | None
-    until: float
-    reason: str
-    within: float = 0.0
-    datum: str = ""
+    allowed: float | None  # upper edge of the band of the error, whose lower edge is 0 [1]; None if not judged
+    until: float  # instant up to which it is judged [s]
+    reason: str  # why the band ends there, or why the column is not judged
+    within: float = 0.0  # instant up to which it would pass, were it exact from there on [s]
+    datum: str = ""  # of which one per cent sets the band of a column; empty of a number
 
     @property
     def beside(self) -> float:
@@ -112,16 +92,9 @@ class Judgement:
 
 
 def judge(problem: Problem, history: History, against: Standard | None = None) -> Judgement:
-    """Judge an answer to a problem.
+    """Judge an answer to a problem, given at the steps of the problem's scene.
 
-    Parameters
-    ----------
-    problem
-        The problem.
-    history
-        The answer, at the steps of the problem's scene.
-    against
-        The exact motion and the bands, where they are at hand; by default computed, once a problem.
+    What it is held against is computed, once a problem, where it is not at hand.
 
     Raises
     ------

@@ -38,21 +38,13 @@ Columns = Mapping[str, Array]
 
 @dataclass(frozen=True)
 class Base:
-    """A way to run a problem, mostly by DDA: a scheme and how many of its steps make one of the scene's.
+    """A way to run a problem, mostly by DDA: a scheme and how many of its steps make one of the scene's."""
 
-    Attributes
-    ----------
-    words
-        The scheme in words; empty where the run stands for the exact motion.
-    solver
-        That runs it, where it is an exact solution; empty where it is DDA.
-    """
-
-    words: str
+    words: str  # the scheme's; empty where the run stands for the exact motion
     values: Mapping[str, Any]
     every: int = 1
     usual: bool = False  # whether wrong numbers are looked for in runs of it as well
-    solver: str = ""
+    solver: str = ""  # an exact solution that runs it; empty where it is DDA
 
     @property
     def exact(self) -> bool:

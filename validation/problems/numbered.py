@@ -1,7 +1,6 @@
 """Numbers that an answer is judged by where no single motion is the right one: exact values, and the bands around them.
 
-The bands are what one per cent of a datum changes: data of a body and its contact are not known to better than that, an
-error below it changes nothing for who uses the answer.
+The bands are what one per cent of a datum changes, for the reason of `validation.problems.bands`.
 """
 
 from __future__ import annotations
@@ -20,35 +19,17 @@ ROUNDING = 1e-9  # relative, of an edge: what one per cent of a datum changes is
 
 @dataclass(frozen=True)
 class JudgedNumber:
-    """A number of an answer.
-
-    Attributes
-    ----------
-    name, unit
-        What it is.
-    exact
-        The exact value.
-    low, high
-        Edges of the band, both inside.
-    scale
-        What an error is told as a share of, in the number's unit.
-    reason
-        Why the band ends there.
-    measure
-        Function of the answer; None where it cannot be measured on it.
-    optional
-        Whether an answer may do without it, since it is of a column beside the positions.
-    """
+    """A number of an answer."""
 
     name: str
     unit: str
     exact: float
-    low: float
+    low: float  # edge of the band, inside, as the other one
     high: float
-    scale: float
-    reason: str
-    measure: Callable[[History], float | None]
-    optional: bool = False
+    scale: float  # what an error is told as a share of, in the number's unit
+    reason: str  # why the band ends there
+    measure: Callable[[History], float | None]  # function of the answer; None where it cannot be measured on it
+    optional: bool = False  # whether an answer may do without it, since it is of a column beside the positions
 
     def passes(self, value: float) -> bool:
         """Whether a value is in the band."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -25,9 +25,9 @@ from validation.problems.problem import Problem, names, problem
 from validation.runs.columns import kind_of, split
 from validation.runs.files import csv_text, write_text
 from validation.runs.history import Array, History
+from validation.runs.progress import Progress
 from validation.scenes.plain import scene_data, words
 
-Progress = Callable[[int, int, str], None]
 PAGE = Path(__file__).with_suffix(".md")  # of the pack, to be filled in
 MEASURE = "norm(answer - exact) / norm(exact), over the instants up to until_s"
 TIME = "time_s"
@@ -83,13 +83,7 @@ def _column_data(posed: Problem, column: str) -> ColumnOfAnswer:
 
 
 def check_place(directory: Path) -> None:
-    """Refuse a place whose files are not those of a pack, which is replaced as a whole.
-
-    Raises
-    ------
-    InputError
-        It is a file, or a directory of other files.
-    """
+    """Raise InputError for a place that holds other files than a pack, which is replaced as a whole."""
     if directory.exists() and not directory.is_dir():
         raise InputError("must be a directory", source=directory, value="a file")
     readme = directory / "README.md"
@@ -103,19 +97,9 @@ def check_place(directory: Path) -> None:
 
 
 def write_pack(place: Path, progress: Progress = lambda number, total, label: None) -> int:
-    """Write the problems into the directory of a pack, and return how many there are.
+    """Write the problems into the directory of a pack, which is made, and return how many there are.
 
-    Parameters
-    ----------
-    place
-        Directory of the pack, which is made.
-    progress
-        Told before each problem: how many are done, of how many, and which is next.
-
-    Raises
-    ------
-    InputError
-        The directory cannot be made or written.
+    Raises InputError where the directory cannot be made or written.
     """
     rows = []
     numbers: list[Sequence[str]] = [NUMBERS]

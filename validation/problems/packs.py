@@ -1,7 +1,5 @@
 """Versions of the pack: which answers to an earlier one are answers to this one.
 
-The rule:
-
 - The *digest* of a problem is taken of its question: its data, its instants and its columns. Titles, words, bands and
   the exact motion are not among them, so that a band or an exact motion that is corrected judges old answers anew.
 - A *minor* version (4.0, 4.1) adds problems; the digests of the others stay, and every earlier answer with them.

@@ -34,30 +34,14 @@ class Number:
 
 @dataclass(frozen=True)
 class Problem:
-    """A question to a program.
+    """A question to a program."""
 
-    Attributes
-    ----------
-    name
-        What tables and answers call it.
-    asks
-        What a program has to get right, in a sentence.
-    title
-        The problem in words.
-    scene
-        The scene; its steps are the instants at which the answer is judged.
-    truth
-        The exact motion; None where numbers are judged.
-    numbers
-        What is measured on an answer in place of the motion.
-    """
-
-    name: str
-    asks: str
-    title: str
-    scene: Scene
-    truth: Truth | None
-    numbers: tuple[JudgedNumber, ...] = ()
+    name: str  # by which tables and answers call it
+    asks: str  # what a program has to get right, in a sentence
+    title: str  # the problem in words
+    scene: Scene  # whose steps are the instants at which the answer is judged
+    truth: Truth | None  # the exact motion; None where numbers are judged
+    numbers: tuple[JudgedNumber, ...] = ()  # that are measured on an answer in place of the motion
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -101,10 +85,7 @@ class ProblemHooks(Hooks):
     def judged_numbers(self, scene: Scene) -> tuple[JudgedNumber, ...]:
         """Return the numbers that answers to a scene are judged by; none where the exact motion judges.
 
-        Raises
-        ------
-        InputError
-            Nothing is known of the scene that could be measured.
+        Raises InputError where nothing is known of the scene that could be measured.
         """
         return ()
 
@@ -159,13 +140,7 @@ def names() -> tuple[str, ...]:
 
 @functools.cache
 def problem(name: str) -> Problem:
-    """Return a problem of the pack by name.
-
-    Raises
-    ------
-    KeyError
-        There is none of this name.
-    """
+    """Return a problem of the pack by name, or raise KeyError."""
     return _makers()[name]()
 
 

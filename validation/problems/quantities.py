@@ -24,16 +24,13 @@ ROTATION, SIDEWAYS = "rotation", "horizontal_displacement"
 
 @dataclass(frozen=True)
 class Quantity:
-    """A number of an answer and of the exact motion; None where the answer or the motion has none.
-
-    `band` are the edges in which it passes, None where it is not judged.
-    """
+    """A number of an answer and of the exact motion; None where the answer or the motion has none."""
 
     name: str
     unit: str
     value: float | None
     exact: float | None
-    band: tuple[float, float] | None = None
+    band: tuple[float, float] | None = None  # edges between which it passes; None where it is not judged
 
 
 def quantities(problem: Problem, history: History, exact: History) -> tuple[Quantity, ...]:

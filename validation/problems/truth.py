@@ -24,28 +24,14 @@ ROCKING = "rigid rocking"
 
 @dataclass(frozen=True)
 class Truth:
-    """An exact solution of a scene, and up to when it is the scene's.
+    """An exact solution of a scene, and up to when it is the scene's."""
 
-    Attributes
-    ----------
-    name
-        Of the solver, or of the closed form.
-    until
-        Instant up to which answers are judged [s].
-    """
-
-    name: str
-    until: float
+    name: str  # of the solver, or of the closed form
+    until: float  # instant up to which answers are judged [s]
 
 
 def truth_of(scene: Scene) -> Truth:
-    """Return the exact solution that a scene has.
-
-    Raises
-    ------
-    InputError
-        The scene has a sweep, or no exact motion is known for it.
-    """
+    """Return the exact solution that a scene has, or raise InputError for a sweep or where none is known."""
     if scene.sweep:
         raise InputError(
             "must not be there, one problem has one scene",
@@ -71,10 +57,7 @@ def truth_of(scene: Scene) -> Truth:
 def _role(scene: Scene) -> Role:
     """Return which exact solution a scene asks for: that of blocks of one strain or rigid, or that of elastic bodies.
 
-    Raises
-    ------
-    InputError
-        The scene asks for both.
+    Raises InputError where it asks for both.
     """
     scene_features = {*features.of(scene)}
     if features.RIGID_BLOCKS in scene_features:
@@ -91,13 +74,7 @@ def _role(scene: Scene) -> Role:
 
 
 def exact(scene: Scene, truth: Truth) -> History:
-    """Return the exact motion of a scene at its steps up to the truth's end.
-
-    Raises
-    ------
-    InputError
-        It could not be computed.
-    """
+    """Return the exact motion of a scene at its steps up to the truth's end; InputError if it cannot be computed."""
     if truth.name == ROCKING:
         return _rotation(scene, truth)
     run = get_solver(truth.name).solve(scene)
@@ -111,10 +88,7 @@ def exact(scene: Scene, truth: Truth) -> History:
 def _comes_down(scene: Scene) -> float:
     """Return when a block that is let go at rest from a tilt comes down on its base [s]; an impact is not judged.
 
-    Raises
-    ------
-    InputError
-        The scene is another one than that.
+    Raises InputError for any other scene.
     """
     _refuse_other_rocking(scene)
     width, height = _sizes(scene)

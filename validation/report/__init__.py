@@ -1,4 +1,1 @@
-"""The PDF report, built from a results directory.
-
-No solver is called from here.
-"""
+"""The PDF report, built from a results directory; no solver is called from here."""

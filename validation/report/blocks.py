@@ -35,9 +35,9 @@ class Paragraph:
 class TableColumn:
     """A table column: title, kind of its cells, and a title shared with neighbours.
 
-    ``decimal`` aligns numbers at the decimal point, ``verdict`` colours PASS, FAIL and NOT RUN in a list of gates,
-    ``outcome`` the same with what follows the word, ``code`` is an identifier, ``id`` a long one that breaks and takes
-    the remaining width, as ``fill`` does for text.
+    ``decimal`` aligns numbers at the decimal point, ``verdict`` colours PASS, FAIL and NOT RUN, ``outcome`` the same
+    with what follows the word, ``code`` is an identifier, ``id`` a long one that breaks and takes the remaining width,
+    as ``fill`` does for text.
     """
 
     title: str
@@ -105,7 +105,7 @@ def table(
 
 
 def _are_numbers(cells: Sequence[str]) -> bool:
-    """Whether some cells are numbers, and the others words or dashes without a digit."""
+    """Whether some cells are numbers and the others hold no digit."""
     numbers = [cell for cell in cells if NUMBER.fullmatch(cell)]
     others = [cell for cell in cells if not NUMBER.fullmatch(cell) and any(map(str.isdigit, cell))]
     return bool(numbers) and not others
@@ -130,7 +130,7 @@ class Callout:
 
 @dataclass(frozen=True)
 class PageBreak:
-    """The rest starts on a new page (nothing happens at the top of a page)."""
+    """The rest starts on a new page (nothing at the top of a page)."""
 
 
 @dataclass(frozen=True)
@@ -158,7 +158,7 @@ class Listing:
 
 @dataclass(frozen=True)
 class Link:
-    """A page that others lead to: its file, its name, what is on it, the file of a picture, and the pages below it."""
+    """A page that others lead to: file, name, what is on it, file of a picture, and pages below it."""
 
     target: str
     title: str
@@ -197,7 +197,7 @@ def figures_of(blocks: Iterable[Block]) -> list[FigureBlock]:
 
 
 def as_data(block: Block, text: Callable[[str], str]) -> dict[str, Any]:
-    """Return a block as plain data with the name of its kind, those within it as well, every text changed."""
+    """Return a block as plain data with the name of its kind, as those within it, every text changed."""
     data: dict[str, Any] = _changed(block, text)
     return data
 

@@ -21,7 +21,7 @@ from validation.suite.folders import study_names
 
 
 def ordered_studies(results: Results, chosen: Sequence[str] | None = None) -> list[str]:
-    """Return the studies of a directory, or those of some names, in the order of their chapters, users' scenes last.
+    """Return the studies of a directory, or those named, in the order of their chapters, users' scenes last.
 
     Raises
     ------
@@ -67,7 +67,7 @@ def unread_studies(results: Results, studies: Sequence[str]) -> dict[str, str]:
 
 
 def build(results: Results, out: Path, chosen: Sequence[str] | None = None, gates: bool = False) -> Path:
-    """Write the PDF of all studies in a results directory, or of some of them, and return its path.
+    """Write the PDF of studies in a results directory, by default all, and return its path.
 
     Where `gates` is true, those that passed are listed.
 
@@ -102,7 +102,7 @@ def _all_blocks(results: Results, studies: Sequence[str], figures: Path, gates: 
 
 
 def chapter_blocks(results: Results, study: str, figures: Path) -> Blocks:
-    """Return the chapter of a study; where its results give no numbers for it, why, which does not cost the others."""
+    """Return the chapter of a study, or why its results give no numbers for it: the others go on."""
     try:
         return _chapter(results, study, figures)
     except _NotDrawable as error:
@@ -116,12 +116,12 @@ def _chapter(results: Results, study: str, figures: Path) -> Blocks:
 
 
 class _NotDrawable(InputError):
-    """A part of the report that its results give no numbers for."""
+    """A part of the report without numbers."""
 
 
 @contextmanager
 def _damage_named(results: Results, what: str) -> Iterator[None]:
-    """Name the part that cannot be written from results which are damaged in a way that no check detects."""
+    """Name the part that results, damaged in a way that no check detects, give no numbers for."""
     try:
         yield
     except InputError:
@@ -132,12 +132,7 @@ def _damage_named(results: Results, what: str) -> Iterator[None]:
 
 
 def write_figures(results: Results, out: Path, chosen: Sequence[str] | None = None) -> list[Path]:
-    """Write the figures of the chapters, and one for a slide of each scene, to a directory as SVG and PNG.
-
-    Returns
-    -------
-    list of Path
-        The files.
+    """Write the figures of the chapters, and one for a slide of each scene, as SVG and PNG; return the files.
 
     Raises
     ------

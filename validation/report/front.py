@@ -1,7 +1,7 @@
 """The pages that are read first: what the results are, what did not pass, and the pages that a study has for them.
 
-A study whose folder has a ``front.toml`` answers first: that file is a chapter (`validation.report.chapters.written`)
-of the scenes of all studies, whose ``first`` is set before what did not pass, and whose `DECISIONS` are pages after it.
+A ``front.toml`` in a study's folder is a chapter (`validation.report.chapters.written`) of the scenes of all studies:
+its ``first`` stands before what did not pass, its `DECISIONS` are pages after it.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ OVERVIEW_SCENES = 25  # lines of a table that leave room on a page for what the 
 
 
 def front_chapter(results: Results, studies: Sequence[str], directory: Path) -> WrittenChapter | None:
-    """Return what the first study with such pages says first, None where no study of the results has any."""
+    """Return what the first study with such pages says, None without one."""
     for study in studies:
         folder = folder_of(study)
         description = None if folder is None else folder.path / "front.toml"
@@ -41,7 +41,7 @@ def front_chapter(results: Results, studies: Sequence[str], directory: Path) -> 
 def front_pages(
     front: WrittenChapter | None, groups: Groups, verdicts: Verdicts, provenances: Sequence[Mapping[str, Any]] = ()
 ) -> Blocks:
-    """Return the pages that are read first; where no study has any, what the results are and their verdicts."""
+    """Return the pages that are read first; without such a study, what the results are and their verdicts."""
     model = "" if front is None else f"The model is that of {PAPER}. "
     imprint = Paragraph(f"{model}{identity(provenances)}.", "small")
     failures = not_passed(verdicts)

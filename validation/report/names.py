@@ -24,17 +24,17 @@ def escaped(text: str) -> str:
 
 
 def quoted(text: str) -> str:
-    """Return a text of a user's for figures and pages, in which nothing is a citation."""
+    """Return a user's text for figures and pages, in which nothing is a citation."""
     return KEY.sub(r"\\@", escaped(text))
 
 
 def page_name(study: str) -> str:
-    """Return the name of a study as its figures and pages have it: only those of the suite itself cite sources."""
+    """Return the name of a study in figures and pages: only those of the suite cite sources."""
     return _change(study)(study)
 
 
 def unescaped(text: str, cited: Callable[[str], str] = str) -> str:
-    """Return a text for pages, which know no escaped signs; `cited` marks the citations in it before."""
+    """Return a text for pages, which know no escapes; `cited` marks the citations in it before."""
     return cited(visible(text)).replace(rf"\{DOLLAR}", DOLLAR).replace(r"\@", "@")
 
 
@@ -63,11 +63,11 @@ class Readable(Results):
 
     @cached_property
     def _readable_verdicts(self) -> list[VerdictRecord]:
-        """The verdicts as they are kept, read once: every chapter asks for its own."""
+        """The verdicts as kept, read once: every chapter asks for its own."""
         return super().readable_verdicts()
 
     def history(self, key: str) -> History | None:
-        """Return a history, whose columns may have names of a user's solver."""
+        """Return a history, whose columns may have a user's names."""
         history = super().history(key)
         if history is None:
             return None
@@ -76,12 +76,12 @@ class Readable(Results):
 
 
 def _change(study: str) -> Callable[[str], str]:
-    """Return what makes the texts of a study fit to be shown."""
+    """Return what makes the texts of a study showable."""
     return escaped if study in study_names() else quoted
 
 
 def with_texts(data: Any, change: Callable[[str], str], skipped: Collection[str] = ()) -> Any:
-    """Return plain data with every text changed, but those under the keys that are skipped."""
+    """Return plain data with every text changed but those under skipped keys."""
     if isinstance(data, str):
         return change(data)
     if isinstance(data, Mapping):

@@ -25,7 +25,7 @@ PAPER = (
 
 
 def references() -> dict[str, dict[str, str]]:
-    """Return the fields of the sources by their keys, in the order of the file."""
+    """Return the fields of the sources by key, in the order of the file."""
     entries = {}
     for kind, key, body in ENTRY.findall(BIBLIOGRAPHY.read_text("utf-8")):
         fields = {name: value.replace("{", "").replace("}", "") for name, value in FIELD.findall(body)}
@@ -39,12 +39,12 @@ def _key() -> re.Pattern[str]:
 
 
 def marked(text: str) -> str:
-    """Return a text in which the keys that cite a source are told from those that stand in a user's own words."""
+    """Return a text in which keys that cite a source are told from a user's own words."""
     return _key().sub(CITED, text)
 
 
 def named(text: str, form: Callable[[str, str], str] = lambda name, key: name) -> str:
-    """Return a text in which authors and year stand for keys, each in the form that is made of them and the key."""
+    """Return a text in which authors and year, in a form of them and the key, stand for keys."""
     entries = references()
 
     def name(match: re.Match[str]) -> str:
@@ -56,7 +56,7 @@ def named(text: str, form: Callable[[str, str], str] = lambda name, key: name) -
 
 
 def identity(provenances: Iterable[Mapping[str, Any]]) -> str:
-    """Return who made the suite and which version, date and commit the results are of, as far as the runs know."""
+    """Return who made the suite, and version, date and commit of the results as far as known."""
     values: dict[str, dict[str, None]] = {"version": {}, "run on": {}, "commit": {}}
     for provenance in provenances:
         packages = provenance.get("packages")

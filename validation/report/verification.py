@@ -29,20 +29,13 @@ NAMES = 2  # of scenes and of metrics, before how many more there are
 
 @dataclass(frozen=True)
 class Standing:
-    """What came out of the gates of a phenomenon.
+    """What came out of the gates of a phenomenon."""
 
-    Attributes
-    ----------
-    passed
-        By solver how many gates it passes, and of how many that judge it.
-    values
-        By id the value of each gate that decides, and the margin that it has.
-    others
-        By program how many of the problems that ask for it, cases counted, it passes, and of how many that it answered.
-    """
-
+    # by solver how many gates it passes, of how many that judge it
     passed: Mapping[str, Sequence[int]] = field(default_factory=dict)
+    # by id the value of each gate that decides, and its margin
     values: Mapping[str, tuple[Value, float | None]] = field(default_factory=dict)
+    # by program how many of the problems that ask for it, cases counted, it passes, of how many that it answered
     others: Mapping[str, Sequence[int]] = field(default_factory=dict)
 
 
@@ -50,7 +43,7 @@ Standings = Sequence[tuple[Phenomenon, Standing]]
 
 
 def standing(shown: Phenomenon, verdicts: Iterable[VerdictRecord]) -> Standing:
-    """Return what verdicts say of a phenomenon; gates that did not run are left out."""
+    """Return what verdicts say of a phenomenon, without gates that did not run."""
     of_study = {v["id"]: v for v in verdicts if v["study"] == shown.study and v["verdict"] != Status.NOT_RUN}
     passes: dict[str, list[bool]] = {JUDGED: []}
     for gate in shown.gates:
@@ -64,7 +57,7 @@ def standing(shown: Phenomenon, verdicts: Iterable[VerdictRecord]) -> Standing:
 
 
 def judged_solvers(shown: Phenomenon, gate: Gate) -> Collection[str]:
-    """Return whom a gate judges: `JUDGED` where it is needed, else the first of a pair, or who a derived row is of."""
+    """Return whom a gate judges: `JUDGED` where it is needed, else the first of a pair, or the owner of a row."""
     solvers = shown.solvers(gate)
     if JUDGED in solvers:
         return [JUDGED]
@@ -72,21 +65,21 @@ def judged_solvers(shown: Phenomenon, gate: Gate) -> Collection[str]:
 
 
 def decisive(gates: Sequence[Gate]) -> Gate:
-    """Return the gate of the least tolerance, the first of those that are alike but for rounding."""
+    """Return the gate of least tolerance, the first of those alike but for rounding."""
     return min(gates, key=lambda gate: significant(gate.tolerance, 3))
 
 
-# ---- tables ---------------------------------------------------------------------------------------------------------
+# ---- tables ----
 
 
 def standings(verdicts: Sequence[VerdictRecord]) -> Standings:
-    """Return the phenomena of which there are verdicts, each with what came out."""
+    """Return the phenomena with verdicts, each with what came out."""
     listed = [(shown, standing(shown, verdicts)) for shown in phenomena(v["study"] for v in verdicts)]
     return [(shown, stands) for shown, stands in listed if stands.passed]
 
 
 def truth_counts(shown: Phenomenon) -> str:
-    """Return how many gates a phenomenon has of each kind of truth."""
+    """Return the number of gates of a phenomenon by kind of truth."""
     kinds = Counter(gate.reference_kind for gate in shown.gates)
     return ", ".join(f"{count} {kind}" for kind, count in sorted(kinds.items()))
 
@@ -94,7 +87,7 @@ def truth_counts(shown: Phenomenon) -> str:
 def phenomenon_table(listed: Standings) -> Table:
     """Return a row for each phenomenon: its study, its gates by the kind of truth, who passes how many of them.
 
-    Where answers of other programs are at hand, beside it what these pass of the problems that ask for it.
+    Where other programs have answered, what these pass of the problems that ask for it stands beside it.
     """
     rows = [
         (shown.name, shown.study, truth_counts(shown), _tally(stands.passed), _tally(stands.others))
@@ -110,7 +103,7 @@ def _tally(passed: Mapping[str, Sequence[int]]) -> str:
 
 
 def matrix_table(listed: Standings) -> Table:
-    """Return what decides each phenomenon: two remarks, its name and its sources, then a row a reason."""
+    """Return what decides each phenomenon: its name and its sources as remarks, then a row a reason."""
     rows: list[tuple[str, ...]] = []
     for shown, stands in listed:
         rows += [(shown.name,), (TEXTS.text("remark", study=shown.study, sources=shown.sources),)]
@@ -131,38 +124,38 @@ def _row(gates: Sequence[Gate], stands: Standing) -> tuple[str, ...]:
 
 
 def truth_cell(gate: Gate) -> str:
-    """Return the kind of a gate's truth with its uncertainty, and the reason of the band."""
+    """Return the kind of a gate's truth with its uncertainty, and the band's reason."""
     width = f" ± {short(gate.reference_uncertainty, 2)}" if gate.reference_uncertainty else ""
     return f"{gate.reference_kind}{width}: {gate.reason}"
 
 
 def band_of(gate: Gate) -> str:
-    """Return the band of a gate, alike on every processor: of one that is rounding its middle alone has digits."""
+    """Return the band of a gate, alike on every processor: one of rounding has digits in its middle alone."""
     if gate.target and gate.low < gate.high and gate.tolerance < NOISE:
         return f"{short(gate.target, 6)} ± rounding"
     return f"{short(gate.low, 2)} … {short(gate.high, 2)}" if not gate.target else band_cell(gate.low, gate.high)
 
 
 def noted_value(gate: Gate, value: Value) -> str:
-    """Return the value of a gate; of what is rounding that it is below the noise, alike on every processor."""
+    """Return the value of a gate, alike on every processor: of rounding that it is below the noise."""
     if isinstance(value, float) and abs(value) < NOISE and gate.low < gate.high:
         return f"<{power(NOISE, 1)}"
     return "0" if value == 0 else value_cell(value, gate.metric)
 
 
 def margin_cell(margin: float | None) -> str:
-    """Return a margin in per cent of the way from target to edge, a dash where there is none."""
+    """Return a margin in per cent of the way from target to edge, or a dash."""
     return DASH if margin is None else f"{decimal(100 * margin, 0)} %"
 
 
 def missing_table() -> Table:
-    """Return what DDA was validated on elsewhere and is not here, with the reason."""
+    """Return what DDA was validated on elsewhere and not here, with the reason."""
     rows = [tuple(line.split(" | ")) for line in TEXTS.text("missing").splitlines()]
     return table(("Missing", "Why"), rows, TEXTS.text("missing_caption"))
 
 
 def matrix(verdicts: Sequence[VerdictRecord]) -> Blocks:
-    """Return the matrix of some verdicts, and what is missing; nothing where they are of no study of the suite."""
+    """Return the matrix of verdicts, and what is missing; nothing where they are of no study of the suite."""
     listed = standings(verdicts)
     if not listed:
         return []
@@ -170,7 +163,7 @@ def matrix(verdicts: Sequence[VerdictRecord]) -> Blocks:
 
 
 def verdict_blocks(shown: Phenomenon, verdicts: Sequence[Verdict], every: bool) -> Blocks:
-    """Return what came out of a run: of the gates with one reason the tightest and those that did not pass, or all."""
+    """Return what came out of a run: by reason the tightest gate and those that did not pass, or all."""
     by_id = {verdict.gate.id: verdict for verdict in verdicts}
     rows = []
     for gates in shown.lines():

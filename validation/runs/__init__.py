@@ -1,4 +1,1 @@
-"""What comes out of a solver: histories, outcomes, modes, and the results directory that keeps them.
-
-Nothing about scenes, solvers or judging comes in.
-"""
+"""What comes out of a solver: histories, outcomes, modes, and the results directory that keeps them."""

@@ -31,61 +31,31 @@ class Rebound:
 
 @dataclass(frozen=True)
 class ContactRecord:
-    """A run's contact over time; element 0 is step 1. What a solver does not give is None or empty.
+    """A run's contact over time, arrays of the shape (steps,), element 0 of step 1; None or empty where not given."""
 
-    Attributes
-    ----------
-    time
-        Times of the steps [s], shape (steps,).
-    force, impulse
-        Sum of the normal forces on the block [N], and its integral from t = 0 on [N s], shape (steps,).
-    penetration, gap
-        Largest penetration and largest gap of any corner or point of the base [m], not negative, shape (steps,).
-    open_share
-        Share of the corners, or of the base, that carries nothing [-], shape (steps,).
-    velocity, start_velocity
-        Velocity of the centre of mass, upwards [m/s], shape (steps,), and at t = 0.
-    rebounds
-        The contacts that begin within the run, in the order of their beginning.
-    energies
-        Name among `STORED`, `LOST` and `LOST_AT_IMPACTS` to the energy at each step [J], shape (steps,).
-    start_energy, input_energy
-        Kinetic energy at t = 0 [J]; that energy and what the loads put in statically, as the scale of changes [J].
-    solves, cuts
-        Solves of the open-close iteration and cuts of each step [-], shape (steps,).
-    slip
-        Largest way that any corner or point has slipped from its start [m], shape (steps,).
-    """
-
-    time: Array
-    force: Array
-    impulse: Array
-    penetration: Array
-    gap: Array
-    open_share: Array
-    start_velocity: float
-    start_energy: float
-    input_energy: float
-    velocity: Array | None = None
-    rebounds: tuple[Rebound, ...] | None = None
-    energies: Mapping[str, Array] = field(default_factory=dict)
-    solves: Array | None = None
-    cuts: Array | None = None
-    slip: Array | None = None
+    time: Array  # of the steps [s]
+    force: Array  # sum of the normal forces on the block [N]
+    impulse: Array  # its integral from t = 0 on [N s]
+    penetration: Array  # largest one of any corner or point of the base [m], not negative
+    gap: Array  # likewise
+    open_share: Array  # of the corners, or of the base, that carries nothing [-]
+    start_velocity: float  # of the centre of mass at t = 0, upwards [m/s]
+    start_energy: float  # kinetic energy at t = 0 [J]
+    input_energy: float  # that and what the loads put in statically, as the scale of changes [J]
+    velocity: Array | None = None  # of the centre of mass, upwards [m/s]
+    rebounds: tuple[Rebound, ...] | None = None  # contacts that begin within the run, in the order of their beginning
+    energies: Mapping[str, Array] = field(default_factory=dict)  # by `STORED`, `LOST` and `LOST_AT_IMPACTS` [J]
+    solves: Array | None = None  # of the open-close iteration of each step [-]
+    cuts: Array | None = None  # of each step [-]
+    slip: Array | None = None  # largest way that any corner or point has slipped from its start [m]
 
 
 def rebounds_of_steps(gap: Array, step: float) -> list[tuple[int, Rebound]]:
     """Return the contacts of one corner, seen from step to step, each with the index of its first closed step.
 
-    The rate before is that of the last step without contact, that after is that of the first step which begins and
-    ends without contact: no contact force has entered either. A contact without such a step before it is left out.
-
-    Parameters
-    ----------
-    gap
-        Gap of the corner at each step, negative where it is closed [m].
-    step
-        dt [s].
+    `gap` is that of the corner at each step, negative where it is closed [m], `step` is dt [s]. The rate before is that
+    of the last step without contact, that after is that of the first step which begins and ends without contact: no
+    contact force has entered either. A contact without such a step before it is left out.
     """
     closed = gap <= 0
     edges = [*(np.flatnonzero(np.diff(closed)) + 1), len(gap)]

@@ -78,13 +78,7 @@ class Defects:
             self._errors.setdefault((path, defect.field, str(defect)), defect)
 
     def check(self) -> None:
-        """Raise what was met.
-
-        Raises
-        ------
-        DefectsError
-            There is a defect.
-        """
+        """Raise DefectsError where there is a defect."""
         errors = []
         for key, error in self._errors.items():
             repeated = self._repeated.get(key)

@@ -1,7 +1,6 @@
 """Libraries that extras of the distribution bring, and the sentence where one is absent.
 
-A plain install judges and compares histories; pages, exact motions of contact and mesh files each have an extra. What
-imports one of these libraries names it here first, so that its absence is a sentence before anything is computed.
+What imports one of these libraries names it here first, so that its absence is a sentence before anything is computed.
 """
 
 from __future__ import annotations
@@ -57,19 +56,6 @@ def sentence(*libraries: str) -> str:
 
 
 def require(subject: str, *libraries: str) -> None:
-    """Refuse what needs libraries of an extra that is not installed.
-
-    Parameters
-    ----------
-    subject
-        The option, page or function that needs them.
-    libraries
-        Names of their imports.
-
-    Raises
-    ------
-    InputError
-        One of them is absent: which, and how to install it.
-    """
+    """Raise InputError, with the command to install it, where an option, page or function lacks a library."""
     if reason := missing(*libraries):
         raise InputError(reason, field=subject)

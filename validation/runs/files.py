@@ -156,13 +156,7 @@ def _copy_into(target: Path, content: Path) -> None:
 
 
 def write_atomically(path: Path, write: Callable[[IO[bytes]], object]) -> None:
-    """Write a file under a temporary name and rename it, so that no half-written file is ever seen.
-
-    Raises
-    ------
-    InputError
-        The directory or the file cannot be written.
-    """
+    """Write a file by `atomic_path`, so that no half-written file is ever seen."""
     with atomic_path(path) as temporary, temporary.open("wb") as stream:
         write(stream)
 
@@ -180,13 +174,7 @@ def csv_text(rows: Iterable[Iterable[object]]) -> str:
 
 
 def check_ending(path: Path | None, field: str) -> None:
-    """Refuse a figure's file of an unknown kind, or that cannot be drawn here, before anything is computed.
-
-    Raises
-    ------
-    InputError
-        The path ends in none of `FIGURE_ENDINGS`, or what draws figures is not installed.
-    """
+    """Raise InputError for a figure's file that ends in none of `FIGURE_ENDINGS`, or where figures cannot be drawn."""
     if path is None:
         return
     if path.suffix.lower() not in FIGURE_ENDINGS:

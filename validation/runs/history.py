@@ -19,21 +19,11 @@ PRESSURE = "contact_pressure"
 
 @dataclass(frozen=True)
 class History:
-    """Columns over time, one value per step from the first step on.
+    """Columns over time, one value per step from the first step on, each of the shape (steps,)."""
 
-    Attributes
-    ----------
-    time
-        Times of the steps [s], shape (steps,).
-    columns
-        Column name to values, each of shape (steps,): displacement [m], contact_pressure [Pa], others.
-    between
-        The same columns at more instants, of a motion that no time step enters; None of one that is stepped.
-    """
-
-    time: Array
-    columns: Mapping[str, Array]
-    between: History | None = None
+    time: Array  # of the steps [s]
+    columns: Mapping[str, Array]  # displacement [m], contact_pressure [Pa], others
+    between: History | None = None  # the same at more instants, of a motion that no time step enters
 
     @property
     def displacement(self) -> Array:

@@ -12,27 +12,13 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Mode:
-    """One mode of a discrete model and of its one-step operator.
+    """One mode of a discrete model and of its one-step operator."""
 
-    Attributes
-    ----------
-    frequency
-        Natural circular frequency w of (K, M) [rad/s].
-    share
-        Share (phi'F)^2 / (w^2 F'D_static) of the static response [1].
-    eigenvalues
-        The two eigenvalues of the one-step operator that are not identically zero [1].
-    contact_share
-        Static contact pressure that the mode carries over the applied pressure [1]; None where not reported.
-    sampled
-        Whether the eigenvalues are what a motion that is exact in time does in a step, and no scheme's.
-    """
-
-    frequency: float
-    share: float
-    eigenvalues: tuple[complex, complex]
-    contact_share: float | None = None
-    sampled: bool = False
+    frequency: float  # natural circular frequency w of (K, M) [rad/s]
+    share: float  # (phi'F)^2 / (w^2 F'D_static) of the static response [1]
+    eigenvalues: tuple[complex, complex]  # of the one-step operator, those that are not identically zero [1]
+    contact_share: float | None = None  # static contact pressure over the applied pressure [1]; None: not reported
+    sampled: bool = False  # whether the eigenvalues are of a motion that is exact in time, and of no scheme
 
     @property
     def spectral_radius(self) -> float:

@@ -2,12 +2,6 @@
 
 Inside a sentence of plain text a format code (``{step:.4g} s``) says all there is to say. Whatever needs a decision is
 decided here: rounding, no value, the sign of zero, per cent, powers of ten, units, the characters of a page.
-
-    records         `significant`
-    plain text      `measured_text`, `band_text`, `number_text`, `share_text`, `remainder_text`, `stated_text`
-    pages           `plain`, `short`, `power`, `percent`, `signed_percent`, `error_percent`, `milliseconds`, `bounded`;
-                    `FORMS`, by the names that tables of a chapter have for them
-    axes            `tick_text`
 """
 
 from __future__ import annotations

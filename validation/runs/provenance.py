@@ -69,7 +69,6 @@ def _git(*words: str) -> str | None:
 
 
 def _processor() -> str:
-    """Return the processor's name as the system tells it."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
     except OSError:

@@ -127,7 +127,7 @@ class VerdictRecord(BaselineVerdict):
 
 
 def sound(record: BaselineVerdict) -> BaselineVerdict:
-    """Return a verdict that its own value and band bear out; the value has four digits, two where it is small.
+    """Return a verdict that its own value, of four digits or of two where it is small, and its band bear out.
 
     Raises
     ------
@@ -151,13 +151,7 @@ def sound(record: BaselineVerdict) -> BaselineVerdict:
 
 
 def unique(records: list[BaselineVerdict]) -> list[BaselineVerdict]:
-    """Return verdicts of which no two are of one gate.
-
-    Raises
-    ------
-    ValueError
-        A study has two of one id.
-    """
+    """Return verdicts, or raise ValueError where two of a study have one id."""
     gates = set()
     for record in records:
         name = (record["study"], record["id"])

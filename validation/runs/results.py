@@ -126,10 +126,7 @@ class Results:
     def sound(self, row: Row, steps: int, columns: Iterable[str]) -> bool:
         """Whether a row's kept history is there, its own, finite, of so many steps and with all these columns.
 
-        Raises
-        ------
-        InputError
-            The file is damaged.
+        Raises InputError where the file is damaged.
         """
         path = self._history_file(row.key)
         if row.outcome not in WITH_HISTORY:
@@ -164,13 +161,7 @@ class Results:
         return sorted(path.stem for path in self.directory.glob("studies/*.json"))
 
     def manifest(self, study: str) -> Manifest:
-        """Return a study's manifest: title, cases (scene, solver, key, definition) and comparisons.
-
-        Raises
-        ------
-        InputError
-            The file is damaged, or is that of another study.
-        """
+        """Return a study's manifest, or raise InputError for a damaged file or that of another study."""
         name = f"studies/{study}.json"
         manifest: Manifest | None = self.read_json(name, None, Manifest)
         if manifest is None:
@@ -180,13 +171,7 @@ class Results:
         return manifest
 
     def whole(self, study: str, histories: bool = False) -> Manifest:
-        """Return a study's manifest where every row that it lists is here, and where asked every history.
-
-        Raises
-        ------
-        InputError
-            The manifest, a row or a history is lost.
-        """
+        """Return a study's manifest, or raise InputError where a row that it lists or, if asked, a history is lost."""
         manifest = self.manifest(study)
         rows = self.rows()
         for case in manifest.get("cases", []):
@@ -207,13 +192,7 @@ class Results:
         return manifest
 
     def check(self) -> None:
-        """Read what a run will add to, so that what cannot be read is told before anything runs.
-
-        Raises
-        ------
-        InputError
-            Rows or verdicts cannot be read.
-        """
+        """Raise InputError where rows or verdicts, which a run will add to, cannot be read, before anything runs."""
         if self.directory.is_file():  # what is in it is not said to be damaged, nor to be deleted
             raise InputError("must be a directory", field="--results", value=f"the file {str(self.directory)!r}")
         self.rows()

@@ -18,13 +18,7 @@ LARGEST_FILE = 512e6  # bytes; the verdicts and manifests of all studies are som
 
 
 def loads(text: str) -> Any:
-    """Return the data of a JSON text.
-
-    Raises
-    ------
-    ValueError
-        It is no JSON, nested without end, or holds a number that is not finite.
-    """
+    """Return the data of a JSON text, or raise ValueError: no JSON, endless nesting, or a number not finite."""
     try:
         return json.loads(text, parse_constant=_refuse, parse_float=_finite, parse_int=_count)
     except RecursionError:

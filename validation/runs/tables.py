@@ -45,15 +45,7 @@ Row = Sequence[Cell]
 
 
 def read_text(path: Path, largest: float = math.inf) -> str:
-    """Return the text of a file of at most so many bytes.
-
-    Raises
-    ------
-    InputError
-        It is no regular file, is too large, or is not in UTF-8.
-    OSError
-        It is not there, or is out of reach.
-    """
+    """Return the text of a file of at most so many bytes, a regular one in UTF-8; raises as `regular` does."""
     regular(path, largest)
     content = path.read_bytes()
     try:

@@ -36,13 +36,8 @@ def named(column: str, unit: str) -> str:
 def recognised(text: str, units: Mapping[str, str]) -> tuple[str, float] | None:
     """Return which column a header names, and the factor by which its values become SI; None where it names none.
 
-    Parameters
-    ----------
-    text
-        What stands in the header: ``displacement``, ``displacement_mm``, ``displacement [mm]``, in any case but that of
-        the unit.
-    units
-        The columns that are known, and the SI unit of each.
+    It is ``displacement``, ``displacement_mm`` or ``displacement [mm]``, in any case but that of the unit; `units`
+    are the SI units of the known columns.
     """
     bracketed = _BRACKETED.fullmatch(text)
     if bracketed:

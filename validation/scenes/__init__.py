@@ -1,4 +1,1 @@
-"""What is simulated: scene files, their tables and what they may state.
-
-Problem data only; no solver comes in.
-"""
+"""What is simulated: scene files, their tables and what they may state."""

@@ -95,12 +95,7 @@ def cosine(size: float, frequency: float, time: Array) -> Parts:
 def read_drive(path: Path, at: str) -> tuple[Array, Array, int]:
     """Return instants and values of a record, and which derivative of a displacement (of an impulse) the values are.
 
-    Before its first and after its last row its column is zero.
-
-    Raises
-    ------
-    InputError
-        It is no such record.
+    Before its first and after its last row its column is zero. Raises InputError for what is no such record.
     """
     names = ("velocity", "acceleration") if at == "base" else ("pressure",)
     columns = read_columns(path, [f"time,{name}" for name in names])

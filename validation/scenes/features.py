@@ -1,7 +1,6 @@
 """Features of scenes: what a scene has beyond one block under a centred pressure on locked springs.
 
-A solver says which of them it handles; a scene that has another one is refused by name. A new feature is one line
-here, or `feature` of a key of the loads.
+A solver says which of them it handles; a scene that has another one is refused by name.
 """
 
 from __future__ import annotations
@@ -113,19 +112,9 @@ def clash(scene: Scene, apart: Apart) -> str | None:
 
 
 def refuse_sweep(scene: Scene, source: str = "") -> None:
-    """Refuse a scene with a sweep where one case is needed.
+    """Raise InputError for a scene with a sweep where one case is needed.
 
-    Parameters
-    ----------
-    scene
-        The scene.
-    source
-        What the command line was given; empty for who calls from Python, whose remedy is another.
-
-    Raises
-    ------
-    InputError
-        One value must be picked for a swept field.
+    `source` is what the command line was given; empty for who calls from Python, whose remedy is another.
     """
     if scene.sweep:
         swept = {field: values for field, values in scene.sweep.items() if field != "mode"}
@@ -142,13 +131,7 @@ def refuse_sweep(scene: Scene, source: str = "") -> None:
 
 
 def refuse_nonlinear(scene: Scene, what: str) -> None:
-    """Refuse a scene whose motion is not linear where the answer, `what`, exists for linear motion only.
-
-    Raises
-    ------
-    InputError
-        The motion is not linear.
-    """
+    """Raise InputError for a scene whose motion is not linear where `what` exists for linear motion only."""
     present = [feature.name for feature in _present(scene) if not feature.linear]
     if not present:
         return
@@ -162,37 +145,19 @@ def refuse_nonlinear(scene: Scene, what: str) -> None:
 
 
 def refuse_damping(scene: Scene, what: str) -> None:
-    """Refuse a scene with damping tables where the answer knows the scheme's own damping only.
-
-    Raises
-    ------
-    InputError
-        The scene has mass or stiffness damping.
-    """
+    """Raise InputError for a scene with damping tables where the answer knows the scheme's own damping only."""
     if scene.damping.present:
         raise InputError(f"{what} takes scenes without damping tables only", source=scene.name, value="one with them")
 
 
 def refuse_ramp(scene: Scene, what: str) -> None:
-    """Refuse a scene with a ramp, or a load of another course, where the answer knows loads only that act at once.
-
-    Raises
-    ------
-    InputError
-        A load does not act in full from t = 0 on.
-    """
+    """Raise InputError for a load that does not act in full from t = 0 on where the answer knows no such load."""
     if courses := COURSES & {*of(scene)}:
         raise InputError(f"{what} takes loads that act at once only", source=scene.name, value=", ".join(courses))
 
 
 def refuse_column(scene: Scene, what: str, field: str | None = None) -> None:
-    """Refuse a scene with the feature of a kind where only a block, which has none, has an answer.
-
-    Raises
-    ------
-    InputError
-        The scene is of a column, or of blocks in the plane.
-    """
+    """Raise InputError for a scene of a column or of blocks in the plane where only a block has an answer."""
     if scene.kind.feature:
         rule = f"{what} takes scenes of a block only"
         raise InputError(rule, source=scene.name, field=field, value=scene.kind_in_words)

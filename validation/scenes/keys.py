@@ -79,13 +79,7 @@ def _attribute(table: type[Section], key_name: str) -> str:
 
 
 def check_needs(tables: Mapping[str, Section]) -> None:
-    """Refuse a key without what it goes with.
-
-    Raises
-    ------
-    ValueError
-        The first such key, with table, rule and value.
-    """
+    """Raise ValueError, with table, rule and value, for the first key without what it goes with."""
     for place, table in tables.items():
         for inside, entry in [("", table), *_entries(table)]:
             stated_fields = entry.model_fields_set

@@ -74,13 +74,7 @@ class Kind:
     fem_keys: Collection[str] | None = None  # keys of `fem` that go with it; None: all
 
     def run(self, table: Any) -> dict[str, Any]:
-        """Return keys of `run`, such as solvers and columns, for a scene that does not state them.
-
-        Parameters
-        ----------
-        table
-            The kind's own table.
-        """
+        """Return keys of `run`, such as solvers and columns, for a scene that does not state them, by its own table."""
         return {}
 
     def optional(self, scene: Any) -> Collection[str]:
@@ -92,13 +86,7 @@ class Kind:
         return False
 
     def check(self, scene: Any) -> None:
-        """Check tables against each other.
-
-        Raises
-        ------
-        ValueError
-            With ``table: key rule, got value``.
-        """
+        """Check tables against each other; raise ValueError with ``table: key rule, got value``."""
 
 
 @functools.cache

@@ -8,13 +8,7 @@ Point = tuple[float, float]
 
 
 def check_polygon(vertices: tuple[Point, ...], base: int, top: int) -> None:
-    """Check that a polygon is simple, counter-clockwise and has the two edges.
-
-    Raises
-    ------
-    ValueError
-        Fewer than three vertices, an edge index out of range, a clockwise or self-crossing outline.
-    """
+    """Raise ValueError for fewer than three vertices, an edge out of range, a clockwise or self-crossing outline."""
     n = len(vertices)
     if n < 3:
         raise ValueError(f"vertices must be three or more, got {n}")

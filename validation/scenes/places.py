@@ -21,10 +21,7 @@ def study_directories() -> tuple[Path, ...]:
 def scene_files() -> Mapping[str, Path]:
     """Return the files of the built-in scenes by name, in the order of their names; no study is imported.
 
-    Raises
-    ------
-    InputError
-        Two scenes have one name.
+    Raises InputError where two have one name.
     """
     return _scene_files(study_directories())
 

@@ -24,13 +24,7 @@ class PlainHooks(Hooks):
     implied: tuple[str, ...] = ()  # of these keys, what the data say in other words
 
     def data(self, scene: Scene) -> dict[str, Any]:
-        """Return what a scene states of a problem, table by table.
-
-        Raises
-        ------
-        InputError
-            Plain data do not hold what drives it, or scenes of this kind.
-        """
+        """Return what a scene of this kind states; raises InputError where plain data do not hold it."""
         kinds_in_words = "must be a block, a column or blocks in the plane"
         raise InputError(kinds_in_words, source=scene.name, value=scene.kind_in_words)
 

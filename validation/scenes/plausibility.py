@@ -35,19 +35,7 @@ class Implausible:
 
 
 def judged(quantity: str, field: str, value: float, **numbers: object) -> Iterator[Implausible]:
-    """Yield what a row of the table says of a quantity, if its value lies beyond a limit.
-
-    Parameters
-    ----------
-    quantity
-        Name of the rows.
-    field
-        The key of the scene that the sentence is about.
-    value
-        What is held against the limits.
-    numbers
-        What the sentence tells beside it.
-    """
+    """Yield what the rows of a quantity say of a value of the key `field`, with other numbers, beyond a limit."""
     for row in TABLE[quantity]:
         if row.get("above", -math.inf) < value < row.get("below", math.inf):
             name = field.rpartition(".")[2]
@@ -110,22 +98,15 @@ def warn_implausible(scene: Scene) -> None:
 _WARNED: set[tuple[str, str]] = set()  # Python's own record of warnings is cleared by every `catch_warnings`
 
 
-# ---- what kinds share ------------------------------------------------------------------------------------------------
+# ---- what kinds share ----
 
 
 def material(
     place: str, density: float, young: float, speed: float, strains: dict[str, float]
 ) -> Iterator[Implausible]:
-    """Yield what a body's density and modulus say; else its wave and its strain, which follow from both.
+    """Yield what a body's density [kg/m3] and modulus [Pa] say; else its wave and its strain, which follow from both.
 
-    Parameters
-    ----------
-    place
-        Of its keys.
-    density, young, speed
-        Density [kg/m3], modulus [Pa] and speed of its wave [m/s].
-    strains
-        Static strain by the key of what causes it [1].
+    `place` is that of its keys, `speed` its wave's [m/s], `strains` are static ones [1] by the key of what causes them.
     """
     units = [
         *judged("density", f"{place}.density", density),

@@ -19,18 +19,10 @@ HEADERS = ("time,x", "time,y", "time,x,y", "time,y,x")
 
 @dataclass(frozen=True)
 class Record:
-    """Displacement of the base, to be read linearly between its instants and held beyond them.
+    """Displacement of the base, to be read linearly between its instants and held beyond them; shapes (count,)."""
 
-    Attributes
-    ----------
-    time
-        Increasing instants [s], shape (count,).
-    x, y
-        Displacement at the instants [m], shape (count,).
-    """
-
-    time: Array
-    x: Array
+    time: Array  # increasing instants [s]
+    x: Array  # displacement at the instants [m]
     y: Array
 
 
@@ -66,10 +58,7 @@ def read_record(path: Path) -> Record:
 def direction(record: Record) -> tuple[float, float]:
     """Return the unit vector of the straight line that the base moves along, towards +x, or +y where it is steeper.
 
-    Raises
-    ------
-    InputError
-        The base does not move, or along no straight line.
+    Raises InputError where the base does not move along a straight line.
     """
     _, sizes, lines = np.linalg.svd(np.column_stack([record.x, record.y]), full_matrices=False)
     if sizes[0] == 0:

@@ -1,7 +1,7 @@
 """Scenes: what is simulated, as TOML in SI units, checked with pydantic; unknown keys are refused.
 
-A scene holds problem data only; no solver is imported here. Every defect of a scene file is reported as one
-:class:`InputError` line that names the file, the field, the rule and the value.
+Every defect of a scene file is reported as one :class:`InputError` line that names the file, the field, the rule and
+the value.
 """
 
 from __future__ import annotations
@@ -165,7 +165,6 @@ class Scene(SceneTables):
 
 
 def _stated(table: Section) -> dict[str, Any]:
-    """Return what a table states as plain data."""
     data: dict[str, Any] = json.loads(table.model_dump_json(exclude_unset=True, by_alias=True))
     return data
 
@@ -254,13 +253,7 @@ _EXCLUSIVE = {
 
 
 def parse_scene(data: dict[str, Any], source: str) -> Scene:
-    """Check plain data and return the scene.
-
-    Raises
-    ------
-    InputError
-        With one line: source, field, rule and value of the first defect.
-    """
+    """Return the scene of plain data, or raise InputError: source, field, rule and value of the first defect."""
     try:
         # A file must not state the scene's name, which is that of the file; plain data have it.
         refuse_unknown_keys({key: value for key, value in data.items() if key != "name"}, _all_tables(), source)
@@ -332,12 +325,7 @@ def scene_names() -> list[str]:
 
 
 def load_scene(source: str | Path) -> Scene:
-    """Return the scene of a TOML file or of a built-in name.
-
-    Parameters
-    ----------
-    source
-        Path of a scene file, or a name that `scene_names` lists.
+    """Return the scene of a TOML file, or of a name that `scene_names` lists.
 
     Raises
     ------
@@ -455,10 +443,7 @@ def _plain_data(path: Path, text: bytes) -> dict[str, Any]:
 def parse_assignment(text: str) -> tuple[str, Any]:
     """Split ``key=value`` of the command line; the value is TOML, or else a plain word.
 
-    Raises
-    ------
-    InputError
-        There is no ``=`` or no key.
+    Raises InputError where there is no ``=`` or no key.
     """
     key, equals, value = text.partition("=")
     if not equals or not key.strip():

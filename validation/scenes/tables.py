@@ -235,7 +235,6 @@ class ContactSection(Section):
                 raise ValueError("shear_stiffness is required where stiffness = inf, got nothing; 0 is frictionless")
             if self.band[1] > 0:
                 raise ValueError(f"band must open at once, band[1] = 0, where stiffness = inf, got {list(self.band)}")
-        # check what turns an impact back: dashpots beside the springs, a law of impact, or a multiplier
         if self.rule == "impact":
             if math.isfinite(self.stiffness):
                 raise ValueError(f'stiffness must be inf with rule = "impact", got {self.stiffness:g}')
@@ -353,7 +352,6 @@ class TimeSection(Section):
         if self.gg is not None and self.gg_rate is not None:
             raise ValueError("gg and gg_rate exclude each other, got both")
         if self.scheme != "newmark":
-            # check the numbers of a scheme that is not Newmark's
             named = f'scheme = "{self.scheme}"'
             for weight, value in (("alpha", self.stated_alpha), ("delta", self.stated_delta)):
                 if f"stated_{weight}" in self.model_fields_set:

@@ -12,7 +12,6 @@ from validation.runs.beside import table_beside
 from validation.scenes.keys import Section, key_of_any_entry, keys_of
 from validation.scenes.kinds import kinds
 
-# what other programs, and the symbols of the text, call a key
 OTHER_NAMES: dict[str, list[str]] = table_beside(__file__, "other_names.toml")
 SHORTEST = 3  # letters of a name that another may be spelt like
 CLOSE = 0.6  # similarity of two names from which on one may be meant for the other
@@ -20,21 +19,9 @@ NAMED = 30  # unknown keys that are named in full
 
 
 def refuse_unknown_keys(data: Mapping[str, Any], tables: Mapping[str, type[Section]], source: str) -> None:
-    """Refuse all keys that are none, in one error.
+    """Raise one InputError for all keys that are none, with those that were probably meant as its advice.
 
-    Parameters
-    ----------
-    data
-        What a scene file states.
-    tables
-        The tables that a scene may have, the scene itself under the empty name.
-    source
-        The file or the scene.
-
-    Raises
-    ------
-    InputError
-        With the keys as its field, and those that were probably meant as its advice.
+    `tables` are those that a scene may have, the scene itself under the empty name; `source` is the file or the scene.
     """
     unknown = list(_unknown_keys(data, "", "", tables))
     if not unknown:

@@ -140,7 +140,7 @@ class ExactBar(Solver):
     line: LineStyle | None = LineStyle("#000000", (), 0.8, 3)
 
     def columns(self) -> tuple[str, ...] | None:
-        """Return the columns that this solver has; those beyond the first two are of contact that opens."""
+        """Return the columns that this solver has; beyond the first two of contact that opens."""
         return OPENING_COLUMNS if features.UNILATERAL in self.handles else BAR_COLUMNS
 
     def applicable(self, scene: Scene) -> str | None:

@@ -22,8 +22,7 @@ from validation.scenes.scene import Scene
 from validation.solvers.limits import check_step
 from validation.solvers.translation import naming
 
-# What solvers raise where numbers leave the range of double precision: also a pivot or a mass that rounding or
-# underflow has made zero.
+# What solvers raise where numbers leave double precision, also where rounding or underflow made a pivot or a mass zero.
 OUT_OF_RANGE = (OverflowError, ZeroDivisionError, FloatingPointError, np.linalg.LinAlgError)
 
 
@@ -115,7 +114,7 @@ class Prepared:
         return None
 
     def history_run(self) -> Run:
-        """Make the steps of a scene whose step is within the limit, or is allowed to exceed it."""
+        """Make the steps; the limit of a step has been checked."""
         raise NotImplementedError
 
     def static(self) -> Mapping[str, float]:
@@ -146,7 +145,7 @@ class Prepared:
             return self.amplitudes(frequencies, exact)
 
     def amplitudes(self, frequencies: Array, exact: bool) -> Mapping[str, Complex]:
-        """Return the response of a scene whose step is within the limit, or is allowed to exceed it."""
+        """Return the response; the limit of a step has been checked."""
         raise NotReported("no frequency response is reported")
 
     def switches(self) -> tuple[Switch, ...]:
@@ -170,10 +169,10 @@ class Solver:
     4. `sources`: modules or packages whose files enter the key of its results.
     5. `role`, `rank` and `line`: its part in comparisons, its place among the references (each solver is compared
        with those of higher rank) and its look in figures.
-    6. `applicable(scene)`: None, or the reason in words why it cannot run this scene, apart from features.
     7. `build(scene, full)`: a `Prepared`, whose `run()` gives a `Run` with one value per step, from the first step
        on, for every column in `scene.run.columns`; numerical failure is an outcome, bad input an `InputError`.
-       A solver of one function overrides `solve(scene, full, fields)` instead.
+       A solver of one function overrides `solve(scene, full, fields)` instead, and `static`, `modes`, `diagnostics`
+       or `response` where it has them.
     8. `own_columns`, or `columns()`: the columns that it has; a scene's further columns are not asked of it.
     9. `libraries`, or `missing(scene)`: what it imports that an extra brings; where one is absent its runs are NOT RUN.
     """
@@ -206,11 +205,11 @@ class Solver:
         raise InputError(f"{self.name} takes no option", field="solver", value=repr(text))
 
     def applicable(self, scene: Scene) -> str | None:
-        """Return None, or why this solver cannot run the scene, apart from features that it does not handle."""
+        """Return None, or why this solver cannot run the scene, apart from features."""
         return None
 
     def refusal(self, scene: Scene) -> str | None:
-        """Return None, or why the scene is refused: a feature that the solver does not handle, or `applicable`."""
+        """Return None, or why the scene is refused, for its features or by `applicable`."""
         if refused := self.refused_features(scene):
             return refused
         if self.only and self.only not in features.of(scene):
@@ -231,7 +230,7 @@ class Solver:
         return [name for name in features.of(scene) if name not in self.handles]
 
     def columns(self) -> tuple[str, ...] | None:
-        """Return the columns that this solver has, or None where it takes whatever a scene asks for."""
+        """Return the columns that this solver has, None where it takes whatever a scene asks for."""
         return self.own_columns
 
     def versions(self) -> Mapping[str, str]:
@@ -239,14 +238,12 @@ class Solver:
         return {}
 
     def prepare(self, scene: Scene, full: bool = False) -> Prepared:
-        """Build the scene's model once; `full` switches the numerical savings off.
-
-        Where a library is absent, what is prepared is `NotInstalled`.
+        """Build the scene's model once, `NotInstalled` without its library; `full` switches numerical savings off.
 
         Raises
         ------
         InputError
-            The scene has features that the solver does not handle: nothing is asked of it as if they were absent.
+            The scene has features that the solver does not handle.
         """
         if reason := self.refused_features(scene):
             raise InputError(f"solver {self.name}: {reason}", source=scene.name)
@@ -254,7 +251,7 @@ class Solver:
         return self.build(scene, full) if absent is None else NotInstalled(scene, absent)
 
     def build(self, scene: Scene, full: bool) -> Prepared:
-        """Build the model of a scene whose features the solver handles; what a solver of models overrides."""
+        """Build the model of a scene whose features the solver handles; a solver of models overrides it."""
         if type(self).solve is Solver.solve:
             raise NotImplementedError(f"{type(self).__name__} must define build or solve")
         return PreparedByFunction(self, scene, full)
@@ -264,19 +261,19 @@ class Solver:
         return self.prepare(scene, full).run(fields)
 
     def static(self, scene: Scene) -> Mapping[str, float]:
-        """Return the static solution of a scene (a solver that is one function may override it)."""
+        """Return the static solution of a scene."""
         return self.prepare(scene).static()
 
     def modes(self, scene: Scene) -> tuple[Mode, ...]:
-        """Return the modes of a scene (a solver that is one function may override it)."""
+        """Return the modes of a scene."""
         return self.prepare(scene).modes()
 
     def diagnostics(self, scene: Scene) -> Mapping[str, float]:
-        """Return the diagnostics of a scene (a solver that is one function may override it)."""
+        """Return the diagnostics of a scene."""
         return self.prepare(scene).diagnostics()
 
     def response(self, scene: Scene, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:
-        """Return the frequency response of a scene (a solver that is one function may override it)."""
+        """Return the frequency response of a scene."""
         return self.prepare(scene).response(frequencies, exact)
 
 

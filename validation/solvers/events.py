@@ -46,8 +46,7 @@ LEAST_SAMPLES = 400  # instants of the motion in which peaks are sought
 SAMPLES_IN_CONTACT = 9  # further ones in each contact
 # of a switch: whether it opens or closes, whether it slips or sticks
 KINDS = {"opens": (True, None), "closes": (False, None), "slips": (None, True), "sticks": (None, False)}
-# Limit of the terms of series that a motion takes, by which it ends in about 10 s of a processor of 2024: of columns'
-# series in steps, and of the waves in bars.
+# Terms of series by which a motion ends, in about 10 s of a processor of 2024: of columns, and of the waves in bars.
 MOST_TERMS = 2.5e6
 MOST_BAR_TERMS = 6e7
 SWITCHES_LISTED = 6  # switches that a note names
@@ -106,7 +105,7 @@ def bar_of(scene: Scene) -> BarProblem:
 
 
 class Motion(Prepared):
-    """A scene whose motion is found from switch to switch; nothing in it is a step, a mesh or a saving."""
+    """A scene whose motion is found from switch to switch, without step, mesh or saving."""
 
     names: tuple[str, ...]  # of the columns
     motion: ProvenMotion
@@ -158,7 +157,7 @@ class Motion(Prepared):
         raise NotImplementedError
 
     def work(self) -> events.Work:
-        """Return what counts the work of a motion: it ends at `most_terms`, in full it has no limit."""
+        """Return what counts the work of a motion, which ends at `most_terms` unless it is full."""
         from fem_reference.events.switches import Work
 
         report = self.progress
@@ -198,7 +197,7 @@ class Motion(Prepared):
             yield f"grazing: at {times} s a switch can be neither proven nor excluded, and none is taken"
 
     def solve_motion(self) -> Iterable[Array]:
-        """Find the motion and its switches; return all columns in the order of `names`."""
+        """Find the motion and its switches; return the columns in the order of `names`."""
         raise NotImplementedError
 
 
@@ -208,7 +207,7 @@ def digits_of_switches(bars: BarsMotion) -> str:
 
 
 def landings(rebounds: Iterable[Rebound]) -> tuple[Rebound, ...]:
-    """Return the contacts that begin with a landing: one that rests on its springs at t = 0 does not."""
+    """Return the contacts that begin with a landing, not with rest on the springs at t = 0."""
     return tuple(rebound for rebound in rebounds if rebound.closing > 0)
 
 
@@ -303,7 +302,7 @@ class BlockMotion(Motion):
         return stored | no_loss | losses
 
     def _rebounds(self, contacts: Iterable[tuple[float, float | None, int]]) -> tuple[Rebound, ...]:
-        """Return the landings of all corners in the order of time; under a law of impact those that its impacts are."""
+        """Return the landings of all corners in the order of time; under a law of impact its impacts."""
         restitution = self.motion.problem.restitution
         if restitution is None:
             return landings(self._rebound(*contact) for contact in sorted(contacts, key=operator.itemgetter(0)))

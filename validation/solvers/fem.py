@@ -32,13 +32,7 @@ OF_SUB_BLOCKS = ("block.subdivide", "block.pattern", "block.glue_ratio")  # the 
 
 
 def problem_of(scene: Scene) -> fem_reference.Problem:
-    """Return the finite-element problem of a scene.
-
-    Raises
-    ------
-    InputError
-        The problem refuses a value.
-    """
+    """Return the finite-element problem of a scene; what it refuses is an `InputError`."""
     b = scene.block
     f = scene.fem
     c = scene.contact
@@ -72,13 +66,7 @@ def missing_reader(scene: Scene) -> str | None:
 
 
 def points_and_cells_of_file(path: str) -> Any:
-    """Return the points and cells of a mesh file as meshio has them.
-
-    Raises
-    ------
-    ValueError
-        The file cannot be read.
-    """
+    """Return the points and cells of a mesh file as meshio has them; a ValueError if it cannot be read."""
     from fem_reference.mesh.files import read_data
 
     return read_data(path)
@@ -216,7 +204,7 @@ class OpeningMesh(Prepared):
             return solve_unilateral(self.problem, self.scheme, steps, self.contact, self.full, columns=columns)
 
     def switches(self) -> tuple[Switch, ...]:
-        """Return the switches of the whole base between the steps: no point of it presses, or some do."""
+        """Return the switches of the whole base between the steps: no point presses, or some do."""
         return switches_between_steps({"base": self.is_open}, self.time)
 
     def contact_record(self) -> ContactRecord:

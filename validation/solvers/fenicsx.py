@@ -64,7 +64,7 @@ ENVIRONMENT = {
 def candidates() -> Iterator[str]:
     """Yield interpreters that may have dolfinx: the one that is named, or this one and those on the PATH.
 
-    Scripts come last: each shim of a manager of versions takes ten times as long to start as an interpreter.
+    Scripts come last: the shims of a manager of versions take ten times as long to start.
     """
     if chosen := os.environ.get(VARIABLE):
         yield chosen
@@ -127,8 +127,7 @@ def _temporary_home() -> tempfile.TemporaryDirectory[str]:
 def worker_directories() -> dict[str, str]:
     """Return where a worker keeps its files: compiled forms, settings, the launcher's session.
 
-    They are the user's own where dolfinx can write its compiled forms there, otherwise temporary, and last as long as
-    this process.
+    They are the user's own where dolfinx can write its compiled forms there, else they last as long as this process.
     """
     temporary = {"TMPDIR": tempfile.gettempdir()}  # of TMPDIR and what else there is, the first that can be written
     try:

@@ -1,7 +1,7 @@
-"""Solvers that are no Python: histories that a program has left in files, and programs that are started.
+"""Solvers that are no Python: histories in files, and programs that are started.
 
 A program reads a scene from its standard input, a key and its values in a line (`validation.scenes.plain.lines`), and
-prints the history as a table. It ends with status 77 where the scene is not for it, and says why on standard error.
+prints the history as a table. It ends with status 77 if the scene is not for it, and says why on standard error.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from validation.solvers.processes.worker import stderr_tail
 from validation.solvers.user import ALLOWANCE, UserSolver, base_limit
 
 ENDING = ".csv"
-REFUSED = 77  # exit status, as test harnesses of make take it for a test that is left out
+REFUSED = 77  # exit status, by which test harnesses of make leave a test out
 
 
 class Outside(Solver):
@@ -42,7 +42,7 @@ class Outside(Solver):
         self.name = place
 
     def unhandled(self, scene: Scene) -> list[str]:
-        """Return nothing: whose the history is knows what it is of."""
+        """Return nothing: who has the history knows what it is of."""
         return []
 
     def parts(self) -> frozenset[str]:
@@ -58,13 +58,7 @@ class Outside(Solver):
         raise NotImplementedError
 
     def checked(self, scene: Scene, text: str | None, path: Path) -> Run:
-        """Return the run of a table, checked as that of a user's solver is.
-
-        Raises
-        ------
-        DefectsError
-            It is no such history; every defect is named.
-        """
+        """Return the run of a table, checked as that of a user's solver is; a `DefectsError` names every defect."""
         instants = scene.time.step * np.arange(1.0, scene.time.steps + 1)
         names = (*scene.run.columns, *OF_BLOCK)
         units = {name: unit_of(name, scene.kind.columns) for name in names}

@@ -18,16 +18,16 @@ from validation.solvers.dda import DDA
 from validation.solvers.translation import tension_note
 
 FACTOR_TOLERANCE = 0.3  # a damped or badly resolved run has another size, but not by a factor of ten
-FORCE_TOLERANCE = 0.02  # of the length of the base, and of the motion that a force in place of a pressure leaves right
+FORCE_TOLERANCE = 0.02  # of the length of the base, and of the motion, which a force for a pressure leaves right
 NEAR_ONE = 0.1  # m: on such a base force and pressure are one number
 SAME_AS = "bit for bit the history of "  # how a note begins that names the suite's solver that answered
-PROGRAM_STEPS = "program_steps"  # of an answer: a number, how many steps the program made where a row takes several
+PROGRAM_STEPS = "program_steps"  # of an answer: how many steps the program made where a row takes several
 LONGEST_NOTE = 400  # characters of what a user's solver says
 LEAST_CORRELATION = 0.8  # correlation from which two histories are one but for their unit
 
 
 def one_line(text: str) -> str:
-    """Return a user's text as one line of a note: no half characters, none that a terminal obeys, not a book."""
+    """Return a user's text as a short line of a note, without half characters and those that a terminal obeys."""
     line = " ".join(text.encode("utf-8", "backslashreplace").decode().split())[: LONGEST_NOTE + 1]
     escaped = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in line)
     return escaped if len(escaped) <= LONGEST_NOTE else f"{escaped[:LONGEST_NOTE]} ..."
@@ -76,9 +76,9 @@ def _wrong_units(scene: Scene, history: History, expected: Array, reference: His
 
 
 def force(scene: Scene, history: History, reference: History) -> str | None:
-    """Say that the pressure is a force, if it is larger by the length of the base and the motion is the expected one.
+    """Say that the pressure is a force, if it is larger by the length of the base and the motion is as expected.
 
-    With one spring in place of two the pressure is larger by two, and so is the gap: no force on a base of 2 m.
+    With one spring in place of two, pressure and gap are larger by two: no force on a base of 2 m.
     """
     if DISPLACEMENT not in history.columns or PRESSURE not in history.columns or PRESSURE not in reference.columns:
         return None

@@ -61,24 +61,8 @@ def read_table(
 
     A row at t = 0 is left out, and so are columns of other names where nothing is missing.
 
-    Parameters
-    ----------
-    path
-        Of the text file.
-    instants
-        At which it has to have its rows [s].
-    units
-        Columns that are read, and the SI unit of each.
-    required
-        Which of them it has to hold.
-    defects
-        Which takes what is wrong.
-    absent
-        What one does about a column that the program cannot report.
-    text
-        The table where it is no file's: what a program has printed, of which the path is the name.
-    header
-        What the table calls its columns, and what else its numbers are to be multiplied by.
+    It has to have its rows at the instants [s]. Columns are read that have a unit (SI); `absent` is what to do about a
+    column that the program cannot report. Text is a table that a program has printed, of which the path is the name.
     """
     before = len(defects)
     rows = _rows(path, text, len(instants), defects)

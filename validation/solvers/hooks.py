@@ -34,10 +34,7 @@ class SolvingHooks(Hooks):
     def reach(self, scene: Scene) -> float:
         """Return the bound of the displacement that load and given energy can drive [m]; infinite where none is known.
 
-        Raises
-        ------
-        InputError
-            What drives the scene cannot be read.
+        An `InputError` if what drives the scene cannot be read.
         """
         return math.inf
 

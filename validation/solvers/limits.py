@@ -1,4 +1,4 @@
-"""Stability limits of conditionally stable schemes: a step beyond is refused unless the scene allows it."""
+"""Stability limits of conditionally stable schemes, beyond which a step must be allowed by the scene."""
 
 from __future__ import annotations
 
@@ -21,16 +21,8 @@ DASHPOTS = {  # what tables state to what then grows where delta is below 1/2
 def check_step(scene: Scene, highest_frequency: Callable[[], float | None]) -> None:
     """Refuse a step beyond the limit of a conditionally stable scheme.
 
-    A contact that opens or slips only softens the model, so the limit of the closed, sticking contact is the
-    least of all.
-
-    Parameters
-    ----------
-    scene
-        The scene with its scheme.
-    highest_frequency
-        Of the solver's model [rad/s], None where nothing limits its step; asked for by conditionally stable schemes
-        only.
+    A contact that opens or slips only softens the model, so the limit of the closed, sticking contact is the least of
+    all. `highest_frequency` gives the model's [rad/s], None where nothing limits its step; only those schemes ask it.
 
     Raises
     ------
@@ -77,11 +69,7 @@ def check_dampers(scene: Scene) -> None:
 
     A mass m on a dashpot c alone, A = -(c / m) V, has V1 / V0 = (gg - (1 - delta) x) / (1 + delta x) with
     x = c dt / m: it grows from x = (1 + gg) / (1 - 2 delta) on. The mass beside the dashpot is that of an element.
-
-    Raises
-    ------
-    InputError
-        The scene has a dashpot and delta below 1/2, and does not allow it.
+    An `InputError`, unless the scene allows it.
     """
     t = scene.time
     if t.scheme != "newmark" or t.delta >= 0.5 or t.allow_unstable:
@@ -102,7 +90,7 @@ def check_dampers(scene: Scene) -> None:
 def discounts(scene: Scene) -> tuple[float, ...]:
     """Return the kinetic discounts gg between which the critical w dt lies.
 
-    Its square is a ratio of two linear functions of gg, so that the ends of the range of an adaptive gg bound it.
+    Its square is a ratio of two linear functions of gg, bounded by the ends of the range of an adaptive gg.
     """
     if scene.damping.kinetic == "adaptive":
         return scene.damping.floor, 1.0

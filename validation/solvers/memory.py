@@ -16,10 +16,10 @@ NUMBER = 8  # bytes
 COPIES = 4  # of a history while it is made, observed, checked and kept
 UNKNOWN = 3000  # bytes of assembly for each unknown: element matrices, indices, M, K and S
 FILL = 150  # bytes of the factor for each unknown and doubling of the mesh
-REFUSED = "must fit into memory"  # what a refusal says; it holds for the moment and is not kept
+REFUSED = "must fit into memory"  # what a refusal says, which is not kept
 MODES = 6  # of one block, stepped together
 GIGABYTE = 1e9
-UNNOTICED = 1e6  # bytes: of so little nobody asks what is left, which takes as long as a step; Python alone has more
+UNNOTICED = 1e6  # bytes: of so little it is not asked what is left, which takes as long as a step
 
 
 def sparse(unknowns: float) -> float:
@@ -37,10 +37,7 @@ def needed(scene: Scene, solver: Solver) -> tuple[float, str]:
 def check(scene: Scene, solver: Solver, limit: float = math.inf) -> None:
     """Refuse a scene whose run cannot fit into the memory, or into the bytes that a worker is allowed.
 
-    Raises
-    ------
-    InputError
-        With the field, the estimate and what is available.
+    The `InputError` has the field, the estimate and what is available.
     """
     required_bytes, field = needed(scene, solver)
     if required_bytes <= min(UNNOTICED, limit):
@@ -58,7 +55,7 @@ def check(scene: Scene, solver: Solver, limit: float = math.inf) -> None:
         )
 
 
-# ---- what is there --------------------------------------------------------------------------------------------------
+# ---- what is there ----
 
 
 def available() -> float:
@@ -77,7 +74,7 @@ def _of_machine() -> float:
 
 
 def of_groups(root: Path) -> Iterator[float]:
-    """Yield what the control group of this process leaves, and each above it up to the root's (version 2 of Linux).
+    """Yield what the control group of this process leaves, and each above it (version 2 of Linux).
 
     Pages of files can be dropped and do not count as held.
     """

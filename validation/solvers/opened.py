@@ -64,8 +64,8 @@ def record(scene: Scene, **parts: Any) -> ContactRecord:
 def end_weight(scene: Scene) -> float | None:
     """Return the weight of the contact force at a step's end in the step's impulse; None where it is no such sum.
 
-    It is delta of Newmark's scheme, and 1 of a contact force that is fully implicit or the impulse of an impact over
-    dt. The conserving rule and the other schemes take forces between the steps, or forces of several.
+    It is delta of Newmark's scheme, and 1 of a contact force that is fully implicit or an impact's impulse over dt. The
+    conserving rule and the other schemes take forces between the steps, or forces of several.
     """
     if scene.time.scheme != "newmark":
         return None
@@ -76,7 +76,7 @@ def end_weight(scene: Scene) -> float | None:
 def end_weight_of_column(scene: Scene) -> float:
     """Return the weight of a column's contact force at a step's end: delta, or 1/2, true to second order of others.
 
-    The momentum of the column does not give the impulse at its foot, so that there is no exact sum to take instead.
+    The momentum of the column does not give the impulse at its foot: there is no exact sum to take instead.
     """
     return scene.time.delta if scene.time.scheme == "newmark" else 0.5
 
@@ -84,12 +84,7 @@ def end_weight_of_column(scene: Scene) -> float:
 def impulse_of_contact(scene: Scene, force: Array, velocity: Array) -> Array:
     """Return the impulse of a contact from t = 0 on [N s]: of its force where that is a sum over the steps' ends.
 
-    Parameters
-    ----------
-    scene
-        The scene.
-    force, velocity
-        Contact force [N] and velocity of the centre of mass, upwards [m/s], at the end of each step, shape (steps,).
+    Contact force [N] and velocity of the centre of mass, upwards [m/s], are at the end of each step, shape (steps,).
     """
     weight = end_weight(scene)
     if weight is None:
@@ -100,14 +95,7 @@ def impulse_of_contact(scene: Scene, force: Array, velocity: Array) -> Array:
 def impulse_of_force(force: Array, step: float, late: float) -> Array:
     """Return the impulse of a stepped force, dt sum((1 - late) N_n + late N_(n+1)) from N_0 = 0 on [N s].
 
-    Parameters
-    ----------
-    force
-        N at the end of each step [N], shape (steps,).
-    step
-        dt [s].
-    late
-        Weight of the force at a step's end: delta of Newmark's scheme, 1 of an implicit contact force.
+    N is the force at the end of each step [N], shape (steps,), dt the step [s], late as of `end_weight`.
     """
     before = np.concatenate(([0.0], force[:-1]))
     return np.asarray(step * np.cumsum((1 - late) * before + late * force), dtype=np.float64)
@@ -116,12 +104,7 @@ def impulse_of_force(force: Array, step: float, late: float) -> Array:
 def impulse_of_momentum(scene: Scene, velocity: Array) -> Array:
     """Return the impulse that changes the momentum under the loads, m sum(V1 - gg V0) + integral F from t = 0 on [N s].
 
-    Parameters
-    ----------
-    scene
-        Mass, discount gg, loads F and the velocity at t = 0.
-    velocity
-        Of the centre of mass at the end of each step, upwards [m/s], shape (steps,).
+    V is the velocity of the centre of mass at the end of each step, upwards [m/s], shape (steps,).
     """
     before = np.concatenate(([scene.block.velocity], velocity[:-1]))
     gained = scene.block.mass * np.cumsum(velocity - scene.time.discount * before)
@@ -132,12 +115,7 @@ def impulse_of_momentum(scene: Scene, velocity: Array) -> Array:
 def rebounds(gaps: Array, step: float) -> tuple[Rebound, ...]:
     """Return the contacts of all corners between steps, in the order of their beginning.
 
-    Parameters
-    ----------
-    gaps
-        Gap of each corner at each step, negative where it is closed [m], shape (corners, steps).
-    step
-        dt [s].
+    Gaps [m], shape (corners, steps), are negative where a corner is closed; the time step is in s.
     """
     timed_rebounds = itertools.chain.from_iterable(rebounds_of_steps(gap, step) for gap in gaps)
     return tuple(rebound for _, rebound in sorted(timed_rebounds, key=operator.itemgetter(0)))

@@ -46,7 +46,7 @@ GROUP = "dda_validation.solvers"  # entry points of other packages: name = "modu
 
 @functools.cache
 def entry_points() -> Mapping[str, str]:
-    """Return the solvers that installed packages bring, name to ``module:attribute``."""
+    """Return the solvers of installed packages, name to ``module:attribute``."""
     points = importlib.metadata.entry_points(group=GROUP)
     return {point.name: point.value for point in sorted(points, key=lambda p: p.name) if point.name not in BUILT_IN}
 
@@ -111,7 +111,7 @@ def _imported(target: str) -> Any:
 
 
 def rank(name: str) -> float:
-    """Place among the references of a solver, or of its run without savings, which follows it at once."""
+    """Return the place of a solver among the references; its run without savings follows it at once."""
     if not is_solver(name):  # a row that another installation has left
         return Solver.rank
     return get_solver(name).rank + (0.25 if name.endswith(FULL) else 0.0)
@@ -136,16 +136,7 @@ def by_role(required_role: Role) -> list[str]:
 
 
 def solve(scene: Scene, solver: str | Solver, full: bool = False) -> Run:
-    """Run one scene with one solver.
-
-    Parameters
-    ----------
-    scene
-        A scene without a sweep; pick a case with `Scene.expand` or `Scene.with_values`.
-    solver
-        A solver or its name.
-    full
-        Switch the numerical savings off.
+    """Run one scene, without a sweep (`Scene.expand`, `Scene.with_values`); `full` switches numerical savings off.
 
     Raises
     ------

@@ -21,8 +21,8 @@ from validation.runs.run import Outcome, Run
 from validation.scenes.scene import Scene
 from validation.solvers.hooks import SolvingHooks
 
-# The bound is of the mean over the body: a point of it may move further by the square root of the mass over that of
-# the point's surroundings, and a scheme overshoots in its first steps. A growing step passes a thousandfold at once.
+# The bound is of the mean over the body: a point may move further by the square root of the mass over that of its
+# surroundings, and a scheme overshoots in its first steps. A growing step passes a thousandfold at once.
 MARGIN = 1e3
 ROUNDING = float(np.finfo(float).eps)  # part of its size that stands for the displacement of a body at rest
 TINY = float(np.finfo(float).tiny)  # what stands for a mass or modulus that underflows

@@ -19,15 +19,9 @@ from validation.scenes.scene import Scene
 def to_run(scene: Scene, result: Any, columns: Mapping[str, Array] | None = None, built: float = 0.0) -> Run:
     """Translate the `Result` of a solver package; the two packages share no class, only the names of the fields.
 
-    Parameters
-    ----------
-    scene, result
-        The scene and the result; one of contact that opens has an outcome, by which a history may have ended early.
-    columns
-        Column name to values at each step, where they are not those of the result; those that the scene asks for are
-        kept.
-    built
-        The time that was spent on the model before [s].
+    A result of contact that opens has an outcome, by which a history may have ended early. `columns` are values at each
+    step where they are not the result's, of which those are kept that the scene asks for; `built` is the time that was
+    spent on the model before [s].
     """
     values = result.columns if columns is None else columns
     history = History(result.time, {name: values[name] for name in scene.run.columns})
@@ -64,14 +58,8 @@ def to_modes(modes: Iterable[Any]) -> tuple[Mode, ...]:
 def switches_between_steps(states: Mapping[str, NDArray[Any]], time: Array, slips: bool = False) -> tuple[Switch, ...]:
     """Return the switches of contacts from step to step, in the order of time.
 
-    Parameters
-    ----------
-    states
-        Name of a contact to its state at each step, 0 or False where it is closed or sticks, shape (steps,).
-    time
-        Times of the steps [s], shape (steps,).
-    slips
-        Whether the other states are of slipping, and not of opening.
+    States by the name of a contact are 0 or False where it is closed or sticks, others where it is open or, of `slips`,
+    slips; they and the times of the steps [s] have the shape (steps,).
     """
     switches = []
     for name, values in states.items():
@@ -103,13 +91,7 @@ def tension_note(history: History) -> tuple[str, ...]:
 
 
 def check_columns(scene: Scene, solver_columns: tuple[str, ...]) -> None:
-    """Refuse columns that a solver does not have.
-
-    Raises
-    ------
-    InputError
-        `[run] columns` names an unknown one.
-    """
+    """Refuse columns that a solver does not have by an `InputError`."""
     unknown = [name for name in scene.run.columns if name not in solver_columns]
     if unknown:
         raise InputError(

@@ -31,13 +31,13 @@ from validation.solvers.processes.worker import WorkerDied, WorkerHangs, ask
 
 TIME_LIMIT = 300.0  # s a case beside the steps
 VARIABLE = "DDA_VALIDATE_TIMEOUT"  # sets another
-# s for each step of the scene: an interpreted loop over a small dense system takes some 0.03 ms a step, a code that
-# writes a line of text some 0.1 ms; on a busy machine ten times that, with as much again in hand.
+# s a step of the scene: an interpreted loop over a small dense system takes some 0.03 ms, a code that writes a line of
+# text some 0.1 ms; on a busy machine ten times that, with as much again in hand.
 ALLOWANCE = 5e-3
 PARTS = frozenset({"modes", "static"})  # what a solver may report beside its history
 ABOUT = ("program", "version", "recipe", "model", "settings")  # what a solver may say of itself, each in words
-# The first argument is the directory of this package. It is on the path for the import of `validation` alone: neither
-# does a folder of that name beside the solver stand in the way, nor do packages beside ours hide those of Python.
+# The first argument is the directory of this package, on the path for the import of `validation` alone: no folder of
+# that name beside the solver stands in the way, and no package beside ours hides one of Python.
 START = (
     "import sys; sys.path.insert(0, sys.argv[1]); import validation; del sys.path[0]; "
     "from validation.solvers.processes.user_worker import main; main(sys.argv[2], sys.argv[3:])"
@@ -48,9 +48,9 @@ HOME = Path(__file__).resolve().parents[2]
 class UserSolver(Solver):
     """A user's ``solve(scene)``, or an object or class with it and, where it likes, `static` and `modes`."""
 
-    # what it reads of a scene cannot be known either: two scenes that differ anywhere are two cases
+    # what it is made of and reads cannot be known: it runs afresh, and scenes that differ anywhere are two cases
     sections = ("damping", "fem", "time", "run")
-    cached = False  # what it is made of cannot be known, so it always runs afresh
+    cached = False
 
     def __init__(self, name: str, target: str) -> None:
         self.name = name
@@ -77,13 +77,7 @@ class UserSolver(Solver):
         return frozenset(self._asked({"parts": sorted(PARTS)}).get("parts", PARTS))
 
     def check_module(self) -> None:
-        """Refuse a solver whose module is nowhere where its process looks; nothing is imported for it.
-
-        Raises
-        ------
-        InputError
-            There is no such module.
-        """
+        """Refuse by an `InputError` a module that is nowhere where its process looks; nothing is imported for it."""
         module = self.target.partition(":")[0]
         folders: Sequence[str] | None = [os.getcwd(), *filter(None, sys.path)]
         parts = module.split(".")

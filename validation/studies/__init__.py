@@ -1,4 +1,4 @@
-"""The studies, a folder each; a folder with a ``study.toml`` is one, see `validation.suite.folders`.
+"""The studies, a folder each (`validation.suite.folders`), which nothing outside imports.
 
-A folder is imported by nothing outside of it. What two studies share is in `validation.suite` or further below.
+What two studies share is in `validation.suite` or further below.
 """

@@ -50,7 +50,7 @@ def near(value: float, relative: float) -> Band:
 
 
 def fitted_order(sizes: ArrayLike, errors: ArrayLike) -> float:
-    """Return the order, with its sign, fitted on all levels of a refinement: error = C size^order."""
+    """Return the signed order fitted on all levels of a refinement: error = C size^order."""
     return float(np.polyfit(np.log(sizes), np.log(errors), 1)[0])
 
 
@@ -66,14 +66,8 @@ def convergence(
 ) -> Metrics:
     """Return the order of one solver's error against another, of cases that are refined.
 
-    Parameters
-    ----------
-    runs
-        The cases, each with the history that converges and that which it converges to.
-    key
-        The swept value that is refined.
-    quantities
-        Those whose order is fitted to the relative L2 error.
+    A run is a case, the history that converges and that which it converges to; ``key`` is the swept value that is
+    refined. The order of each quantity is fitted to its relative L2 error.
     """
     sizes = [operator.attrgetter(key)(case) for case, _, _ in runs]
     orders = {}
@@ -101,16 +95,9 @@ def gate(
     uncertainty: float = 0.0,
     **window: Any,
 ) -> Gate:
-    """Return a gate of a study.
+    """Return a gate of a study: on a case or its name, of one solver or row, or of two that are compared.
 
-    Parameters
-    ----------
-    case, solvers, metric
-        What is judged: the case or its name, one solver or row, or two that are compared.
-    band, reason
-        The edges, and why these.
-    kind, uncertainty, window
-        Kind of the reference, its uncertainty, and further fields of the gate, such as `until`.
+    `window` holds further fields of the gate, such as `until`.
     """
     name = case if isinstance(case, str) else case.name
     names = (solvers,) if isinstance(solvers, str) else solvers

@@ -1,8 +1,8 @@
 """The register of claims: what the paper says, how that is tested, what comes out.
 
 A claim is data of a file ``claims.toml`` and a test: the cases that it needs, the numbers measured on them. It is
-*confirmed* where all bands of the statement as printed hold, *confirmed under a condition* where only those hold that
-carry the condition, and *refuted* otherwise. The expected verdict is a gate of the register's study.
+*confirmed* where all bands of the statement as printed hold, *confirmed under a condition* where only those with the
+condition hold, and *refuted* otherwise. The expected verdict is a gate of the register's study.
 """
 
 from __future__ import annotations
@@ -90,40 +90,20 @@ Tests = dict[str, tuple[Iterable[str | tuple[str, str]], Measure]]
 
 @dataclass(frozen=True)
 class Claim:
-    """One statement, in our words, and its test.
-
-    Attributes
-    ----------
-    id, place, says
-        Stable id, place in the paper, the statement.
-    needs
-        The (case, solver) pairs that it is tested on.
-    measure
-        Function of the evidence that returns named numbers.
-    expected, why
-        The verdict that is expected, and why in one sentence.
-    printed
-        Bands that hold if the statement holds as printed.
-    condition, conditional
-        The condition under which it holds, and the bands that hold then.
-    numbers
-        What an independent program gives: number, value, and half a unit of its last digit.
-    misprint
-        Whether it is a slip of print in an equation or a number, which no curve or conclusion of the paper hangs on.
-    """
+    """One statement and its test."""
 
     id: str
-    place: str
-    says: str
-    needs: Needs
+    place: str  # in the paper
+    says: str  # in our words
+    needs: Needs  # case and solver of each run
     measure: Measure
     expected: Finding
-    why: str
-    printed: tuple[Band, ...]
-    condition: str = ""
-    conditional: tuple[Band, ...] = ()
-    numbers: tuple[tuple[str, float, float], ...] = ()
-    misprint: bool = False
+    why: str  # the verdict is expected, in one sentence
+    printed: tuple[Band, ...]  # hold if the statement holds as printed
+    condition: str = ""  # under which it holds
+    conditional: tuple[Band, ...] = ()  # hold then
+    numbers: tuple[tuple[str, float, float], ...] = ()  # name, value, half a unit of its last digit, by another code
+    misprint: bool = False  # a slip of print in an equation or a number, which no curve or conclusion hangs on
 
     def finding(self, numbers: Mapping[str, float]) -> Finding:
         """Return the verdict on measured numbers."""
@@ -133,7 +113,7 @@ class Claim:
         return Finding.CONDITIONAL if holds else Finding.REFUTED
 
     def row(self) -> Derived:
-        """Return the derived row that holds the verdict and the measured numbers."""
+        """Return the derived row of the verdict and the measured numbers."""
         return Derived(REGISTER, self.id, self.needs, self._compute, READ)
 
     def _compute(self, finished: Finished) -> Metrics:
@@ -160,7 +140,7 @@ def whole(number: float) -> float:
 
 
 def named(*scenes: str) -> dict[str, Scene]:
-    """Return the cases of built-in scenes by name."""
+    """Return cases of built-in scenes by name."""
     return {case.name: case for case in cases(*scenes)}
 
 
@@ -182,12 +162,12 @@ def read_claims(path: Path, tests: Tests) -> tuple[Claim, ...]:
     return tuple(claims)
 
 
-# ---- the page -----------------------------------------------------------------------------------------------------
+# ---- the page ----
 
 
 @dataclass(frozen=True)
 class Register:
-    """A register of claims, as its study, the command and the documentation have it."""
+    """A register of claims."""
 
     study: str
     title: str
@@ -196,7 +176,7 @@ class Register:
     claims: tuple[Claim, ...]
 
     def gates(self) -> tuple[Gate, ...]:
-        """Return the gates on the verdicts of all claims, and on numbers that an independent program gives."""
+        """Return the gates on the verdicts, and on numbers that an independent program gives."""
         gates = [claim.gate() for claim in self.claims]
         for claim in self.claims:
             for number, value, half in claim.numbers:
@@ -209,7 +189,7 @@ class Register:
         return tuple(claim.row() for claim in self.claims)
 
     def words(self) -> dict[str, Any]:
-        """Return what each claim says, why it has its verdict and on which condition, and which are misprints."""
+        """Return what each claim says, why it has its verdict, on which condition, and which are misprints."""
         return {
             "statement": {claim.id: f"{claim.says} ({claim.place})" for claim in self.claims},
             "why": {claim.id: f"{claim.why[:1].upper()}{claim.why[1:]}." for claim in self.claims},
@@ -240,7 +220,7 @@ def entries(register: Register, rows: Iterable[Mapping[str, Any]]) -> list[dict[
 
 
 def page(register: Register, rows: Iterable[Mapping[str, Any]]) -> str:
-    """Return a register as a Markdown page, from the derived rows of its study."""
+    """Return a register as a Markdown page, from its study's derived rows."""
     parts = [f"# {register.title}", register.introduction]
     for entry in entries(register, rows):
         condition = f" ({entry['condition']})" if entry["verdict"] == Finding.CONDITIONAL.words else ""

@@ -1,7 +1,6 @@
 """The studies of the suite, found by their folders, and the study of a single scene.
 
-A folder of `validation.studies` with a ``study.toml`` is a study (`validation.suite.tables` has its keys); beside that
-table are
+A folder of `validation.studies` with a ``study.toml`` (its keys: `validation.suite.tables`) is a study; beside it are
 
     scenes/*.toml    the scenes of this study alone
     formulas.py      bands, derived rows and generated scenes, which the table names
@@ -40,23 +39,14 @@ REQUIRED = ("name", "title", "purpose", "phenomenon", "order")  # of every study
 
 @dataclass(frozen=True)
 class StudyFolder:
-    """A folder with a ``study.toml``.
-
-    Attributes
-    ----------
-    path
-        The folder.
-    form
-        The table of ``study.toml`` that declares the study: ``study``, or ``short``, what stands in place of its fields
-        in a study of fewer cases.
-    """
+    """A folder with a ``study.toml``."""
 
     path: Path
-    form: str = "study"
+    form: str = "study"  # the table of ``study.toml`` that declares it; "short": of fewer cases
 
     @property
     def fields(self) -> dict[str, Any]:
-        """The fields of the study as its table has them."""
+        """The fields of the study."""
         table = _table(self.path / "study.toml")
         fields: dict[str, Any] = table.get("study", {}) | table.get(self.form, {})
         return fields
@@ -76,7 +66,7 @@ def _table(path: Path) -> dict[str, Any]:
 
 
 def study_folders() -> Mapping[str, StudyFolder]:
-    """Return the folders of the studies by the studies' names, in the order of the report.
+    """Return the folders of the studies by name, in the order of the report.
 
     Raises
     ------
@@ -113,7 +103,7 @@ def study_names() -> list[str]:
 
 
 def get_study(name: str) -> Study:
-    """Return a study of the suite by name."""
+    """Return a study by name."""
     return _declared(study_folders()[name])
 
 
@@ -162,12 +152,12 @@ def register_of(name: str) -> Register:
 
 
 def judged_studies() -> list[str]:
-    """Return the names of the studies whose gates the tests judge, which are not the long ones."""
+    """Return the names of the studies whose gates the tests judge: all but the long ones."""
     return [name for name, folder in study_folders().items() if not folder.fields.get("long")]
 
 
 def scene_study(source: str, assignments: Mapping[str, Any] | None = None) -> Study:
-    """Return the study of one scene, built-in or a file, with the gates that belong to it.
+    """Return the study of one scene, built-in or a file, with its gates.
 
     Raises
     ------

@@ -49,7 +49,7 @@ class JudgedAnswer:
 
 @dataclass(frozen=True, eq=False)
 class JudgedSet:
-    """What one program answers and the judgement of each answer that can be judged, by problem."""
+    """The answers of one program, and the judgement of each that can be judged, by problem."""
 
     answers: AnswerSet
     judged: Mapping[str, JudgedAnswer]
@@ -91,7 +91,7 @@ def judged_sets(sets: Sequence[AnswerSet], progress: Progress) -> list[JudgedSet
     return judged_of_sets
 
 
-# ---- a solver's answers ---------------------------------------------------------------------------------------------
+# ---- a solver's answers ----
 
 
 def answers_of(name: str, problems: Sequence[Problem], progress: Progress) -> AnswerSet:
@@ -114,11 +114,10 @@ def answers_of(name: str, problems: Sequence[Problem], progress: Progress) -> An
         answer = _answer(solver, problem)
         if repeats and answer.history is not None and (answer.seconds or 0.0) < REPEATED_WITHIN:
             repeats -= 1
-            # An answer with how far a second run is from it, where it is not the same.
             again = completed(solver, problem.scene).history
             answer = replace(answer, warnings=(*answer.warnings, *_not_repeatable(answer.history, again)))
         answers.append(answer)
-    # What a solver says of itself, as a folder of answers states it; what it does not say is empty.
+    # What a solver says of itself, as a folder of answers states it.
     settings_name = "default" if name.endswith(DEFAULTS) else "chosen"
     if "program" not in about:
         settings_name = ""
@@ -146,7 +145,7 @@ def _answer(solver: Solver, problem: Problem) -> Answer:
 
 
 def _ending(run: Run) -> tuple[Status, str]:
-    """Return the status of a run without a history to judge, and why."""
+    """Return the status of a run without a history, and why."""
     note = run.notes[-1] if run.notes else run.outcome.sentence
     if run.outcome in WRONG:
         sentence = run.outcome.sentence[0].lower() + run.outcome.sentence[1:].rstrip(".")
@@ -158,7 +157,7 @@ def _ending(run: Run) -> tuple[Status, str]:
 
 
 def _not_repeatable(history: History, again: History | None) -> Iterator[str]:
-    """Yield in a sentence how far a second run of a user's solver is from the first; nothing where it is the same."""
+    """Yield how far a second run of a user's solver is from the first; nothing where it is the same."""
     if again is None:
         yield "Not repeatable: a second run gave no history; the verdict is one of several."
         return

@@ -1,8 +1,6 @@
 """The verification matrix: which phenomena are verified by which gates, and the run of one with any solver.
 
-A study states its ``phenomenon`` as a name, or as several names with the scenes on which each is shown (`fnmatch`
-patterns), and the ``problems`` of the pack that ask for it. Its ``sources`` say what the kind of problem and the truth
-rest on.
+How a study states its phenomena is in `validation.suite.tables`; patterns are those of `fnmatch`.
 """
 
 from __future__ import annotations
@@ -36,27 +34,13 @@ SIMILAR = 0.6  # of two words, by difflib's ratio: one may be meant by the other
 
 @dataclass(frozen=True)
 class Phenomenon:
-    """What is verified.
-
-    Attributes
-    ----------
-    name
-        The phenomenon in words.
-    study
-        The study whose scenes show it.
-    sources
-        What problem and truths rest on, with keys of the bibliography.
-    scenes
-        Patterns of the scenes that show it.
-    problems
-        Those of the pack that ask any program for it, all cases of each.
-    """
+    """What is verified."""
 
     name: str
     study: str
-    sources: str
-    scenes: tuple[str, ...] = ("*",)
-    problems: tuple[str, ...] = ()
+    sources: str  # what problem and truths rest on, with keys of the bibliography
+    scenes: tuple[str, ...] = ("*",)  # patterns of those that show it
+    problems: tuple[str, ...] = ()  # of the pack that ask any program for it, all cases of each
 
     @functools.cached_property
     def gates(self) -> tuple[Gate, ...]:
@@ -72,7 +56,7 @@ class Phenomenon:
         return any(problem == name or problem.startswith(f"{name}-") for name in self.problems)
 
     def needs(self, gate: Gate) -> list[tuple[str, str]]:
-        """Return the cases that a gate needs, by scene and solver, those behind derived rows included."""
+        """Return scene and solver of the cases that a gate needs, those behind derived rows included."""
         return get_study(self.study).needs(gate)
 
     def solvers(self, gate: Gate) -> set[str]:
@@ -149,7 +133,7 @@ def phenomenon(text: str) -> Phenomenon:
     raise InputError(rule, field="PHENOMENON", value=repr(text), advice=advice)
 
 
-# ---- a run ----------------------------------------------------------------------------------------------------------
+# ---- a run ----
 
 
 @dataclass(frozen=True)
@@ -168,20 +152,8 @@ def verify(
 ) -> tuple[list[Verdict], list[str]]:
     """Run what the gates of a phenomenon need and judge them.
 
-    Parameters
-    ----------
-    shown
-        The phenomenon.
-    results
-        Where finished cases are found and kept.
-    solver
-        Who answers in the place of `JUDGED`; the gates that do not need that are left out where it is another.
-    jobs, progress
-        As of `validation.engine.run.run_study`.
-
-    Returns
-    -------
-    The verdicts in the order of the gates, and what is to be said of who answered.
+    Return the verdicts in the order of the gates, and what is to be said of who answered: `solver`, in the place of
+    `JUDGED`. Where that is another solver, the gates that do not need `JUDGED` are left out.
     """
     study = get_study(shown.study)
     gates = [gate for gate in shown.gates if solver == JUDGED or JUDGED in shown.solvers(gate)]
@@ -203,7 +175,7 @@ def verify(
 
 
 def _reported(verdict: Verdict) -> Verdict:
-    """Return a verdict that is no failure where the solver has no way to report what is asked."""
+    """Return a verdict; what the solver has no way to report is no failure."""
     if verdict.value != NOT_REPORTED:
         return verdict
     return replace(verdict, status=Status.NOT_RUN, why=f"not reported: {verdict.gate.metric}")

@@ -1,6 +1,6 @@
 """Numbers that somebody printed, as a table of comma-separated values in the folder of a study.
 
-Its entry ``[[gate]]`` says where they are, of which scene a line is, and by which of its keys::
+An entry ``[[gate]]`` says where they are, of which scene a line is, and by which of its keys::
 
     numbers = "errors.csv"
     scene = "methods-locked-{scheme}"
@@ -11,10 +11,10 @@ The first lines of such a table::
     scheme,    contact.stiffness, time.step=0.01, time.step=0.002
     constant,  1e9,               0.557273246,    0.507955225
 
-A column that the scene's pattern names fills it in; a key, or a key and its value (a list's between blanks), picks
-the case. What stands under a key and its value is a number of the entry's only metric, under any other name one of
-the metric of that name, as far as the entry's ``metrics``, where it has some, name it. An empty place is no number.
-Lines that begin with # are remarks.
+A column that the scene's pattern names fills it in; a key, or a key and its value (a list's between blanks), picks the
+case. What stands under a key and its value is a number of the entry's only metric, under any other name one of the
+metric of that name, if the entry's ``metrics``, where it has some, name it. An empty place is no number, a line that
+begins with # a remark.
 """
 
 from __future__ import annotations
@@ -35,14 +35,7 @@ def printed_numbers(
 ) -> Mapping[str, Mapping[str, str]]:
     """Return the numbers of a table as their texts, by case and metric.
 
-    Parameters
-    ----------
-    path
-        The table.
-    entry
-        That of the gates; ``scene``, ``by`` and ``metrics`` are taken out of it.
-    cases
-        The cases of each scene, by its name.
+    ``scene``, ``by`` and ``metrics`` are taken out of the entry; `cases` are those of each scene, by its name.
 
     Raises
     ------
@@ -71,7 +64,7 @@ def printed_numbers(
 
 
 def _value(text: str) -> tuple[float, ...]:
-    """Return the numbers of a key's value: one, or those of a list, between blanks."""
+    """Return the numbers of a key's value, those of a list between blanks."""
     return tuple(map(float, text.split()))
 
 

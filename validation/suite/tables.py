@@ -69,35 +69,18 @@ FUNCTIONS = ("extra", "data", "annotate", "expects")  # that a field may name be
 def declare(folder: Path, fields: Mapping[str, Any], formulas: Any = None) -> Study:
     """Return the study of a folder.
 
-    Parameters
-    ----------
-    folder
-        The folder.
-    fields
-        The table ``study`` of ``study.toml``.
-    formulas
-        The module of the functions that the table names.
+    `fields` is the table ``study`` of ``study.toml``, `formulas` the module of the functions that it names.
     """
     return StudyTable(folder, dict(fields), vars(formulas) if formulas else {}).study()
 
 
 @dataclass(frozen=True)
 class StudyTable:
-    """The table of a study with the functions that it names.
-
-    Attributes
-    ----------
-    folder
-        Where it stands.
-    fields
-        The fields of the study.
-    formulas
-        The functions by name.
-    """
+    """The table of a study with the functions that it names."""
 
     folder: Path
     fields: Mapping[str, Any]
-    formulas: Mapping[str, Any]
+    formulas: Mapping[str, Any]  # functions by name
 
     def function(self, name: str) -> Any:
         """Return what ``formulas.py`` calls so.
@@ -172,7 +155,7 @@ class StudyTable:
         return function()
 
     def _printed(self, entry: dict[str, Any]) -> Iterator[dict[str, Any]]:
-        """Yield the fields of the gates on printed numbers; keys that are no field of a gate are taken out."""
+        """Yield the fields of the gates on printed numbers; other keys are taken out."""
         numbers = entry.pop("numbers")
         given_half = entry.pop("half", None)
         rounding = entry.pop("rounding", 0.0)
@@ -224,12 +207,12 @@ class StudyTable:
 
     @cached_property
     def cases(self) -> Mapping[str, tuple[Scene, ...]]:
-        """The cases of each scene of the study, by the scene's name."""
+        """The cases of each scene, by the scene's name."""
         scenes = [load_scene(declared) if isinstance(declared, str) else declared for declared in self.scenes()]
         return {scene.name: scene.expand() for scene in scenes}
 
     def named_cases(self, names: Iterable[str]) -> list[Scene]:
-        """Return cases of the study: of a scene, or of a pattern of names, all of them, else the one of this name.
+        """Return cases of the study: all of a scene or of a pattern of names, else the one of this name.
 
         Raises
         ------

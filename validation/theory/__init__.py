@@ -1,4 +1,5 @@
-"""Closed forms of the models: statics, spectra, waves, contact, friction, rocking; written apart from all solvers.
+"""Closed forms of the models: statics, spectra, waves, contact, friction, rocking.
 
-Gates derive their bands from them, advice and report their numbers. Nothing that runs, measures or judges comes in.
+They are written apart from all solvers, so that a slip in one cannot hide in its gate. Gates derive their bands from
+them, advice and report their numbers.
 """

@@ -10,39 +10,26 @@ import numpy as np
 
 from validation.runs.history import Array
 
-# ---- on a slope -----------------------------------------------------------------------------------------------------
+# ---- on a slope ----
 
 
 def sliding_acceleration(slope: float, friction: float, gravity: float) -> float:
-    """Acceleration down a slope of a box at rest, g (sin s - tan(phi) cos s), angles in deg [m/s2]; 0 where it stands.
-
-    Where tan(phi) >= tan(s) friction takes all of the weight's component along the slope.
-    """
+    """Acceleration down a slope of a box at rest, g (sin s - tan(phi) cos s), angles in deg [m/s2]; 0 for phi >= s."""
     excess = math.tan(math.radians(slope)) - math.tan(math.radians(friction))
     return gravity * math.cos(math.radians(slope)) * max(excess, 0.0)
 
 
-# ---- on a ground that moves -----------------------------------------------------------------------------------------
+# ---- on a ground that moves ----
 
 
 @dataclass(frozen=True)
 class SlipPiece:
-    """A time in which a box sticks to the ground that moves, or slips in one direction.
+    """A time in which a box sticks to the ground that moves, or slips in one direction."""
 
-    Attributes
-    ----------
-    start
-        First instant [s].
-    displacement, velocity
-        Of the box at that instant [m], [m/s].
-    direction
-        Of its velocity against the ground, -1 or 1; 0 where it sticks.
-    """
-
-    start: float
-    displacement: float
-    velocity: float
-    direction: int
+    start: float  # first instant [s]
+    displacement: float  # of the box at that instant [m]
+    velocity: float  # [m/s]
+    direction: int  # of its velocity against the ground, -1 or 1; 0 where it sticks
 
 
 @dataclass(frozen=True)
@@ -135,8 +122,8 @@ class ShakenBox:
             velocity = piece.velocity - piece.direction * self.grip * (time - piece.start)
             return piece.direction * (velocity - self.ground_velocity(time))
 
-        # The relative velocity turns where the ground accelerates as the box does; between, it is monotonic. It grows
-        # first, and is not above zero again at the end of the second such stretch at the earliest.
+        # The relative velocity turns where the ground accelerates as the box does. It grows first, and is not above
+        # zero again at the end of the second stretch between turns at the earliest.
         low, high = next(
             ends for ends in itertools.pairwise([piece.start, *self._turns(piece)]) if relative(ends[1]) <= 0
         )
@@ -169,7 +156,7 @@ class ShakenBox:
         return self.displacement(time) - self.ground(time)
 
 
-# ---- on a spring ----------------------------------------------------------------------------------------------------
+# ---- on a spring ----
 
 
 @dataclass(frozen=True)

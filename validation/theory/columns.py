@@ -36,14 +36,7 @@ def greatest_solves(contacts: int) -> int:
 def far_face_step(speed: float, height: float, alpha: float) -> float:
     """Return the step below which a push at one face of a block moves the other face the wrong way [s].
 
-    Zero for a rigid block, infinite for another under alpha = 0.
-
-    Parameters
-    ----------
-    speed
-        Of the block's wave [m/s].
-    height
-        Of the block [m].
+    Zero for a rigid block, infinite for another under alpha = 0; `speed` is that of the block's wave [m/s].
     """
     if math.isinf(speed):
         return 0.0
@@ -55,14 +48,8 @@ def far_face_step(speed: float, height: float, alpha: float) -> float:
 def lowest_frequency(stiffness: float, mass: float, blocks: int) -> float:
     """Return the lowest natural frequency of equal rigid blocks on each other on a base, all contacts closed [rad/s].
 
-    w1 = 2 sqrt(k / m) sin(pi / (2 (2 N + 1))).
-
-    Parameters
-    ----------
-    stiffness
-        Of each contact per unit of area [Pa/m].
-    mass
-        Of a block per unit of area [kg/m2].
+    w1 = 2 sqrt(k / m) sin(pi / (2 (2 N + 1))), the stiffness k of a contact [Pa/m] and the mass m of a block [kg/m2]
+    per unit of area.
     """
     return 2 * math.sqrt(stiffness / mass) * math.sin(math.pi / (2 * (2 * blocks + 1)))
 
@@ -131,16 +118,9 @@ def _top_stress(column: ColumnSection, frequencies: Array) -> Array:
 def ring_down(omega: float, stepping: Stepping, share: float = 1e-3) -> float:
     """Return the time in which a free vibration falls to a share of its amplitude under a step [s].
 
-    dt ln(1 / share) / -ln |z|, z the largest root of a step at w dt. Where the step is small for the vibration that is
+    dt ln(1 / share) / -ln |z|, z the largest root of a step at omega [rad/s] times dt. For small w dt that is
     ln(1 / share) / (w^2 (delta - 1/2) dt / 2 + (1 - gg) / (2 dt)) of Newmark's scheme: its algorithmic damping and the
     discount, which is a rate per step. Infinite where neither damps.
-
-    Parameters
-    ----------
-    omega
-        Of the vibration [rad/s].
-    stepping
-        The scheme and its step.
     """
     if not stepping.damps and stepping.gg == 1:
         return math.inf

@@ -85,12 +85,7 @@ class FallingRectangle:
         return time, corner
 
     def next_impact(self, start: float, end: float) -> tuple[float, int] | None:
-        """Return when a corner comes down first [s], and which; None where none does before an instant.
-
-        Parameters
-        ----------
-        start, end
-            Instants at which it begins to fly and up to which it is looked at [s].
+        """Return when a corner comes down first in a flight between two instants [s], and which; None where none does.
 
         Raises
         ------

@@ -9,14 +9,7 @@ from collections.abc import Callable
 def edge(holds: Callable[[float], bool], inside: float, outside: float, tolerance: float) -> float:
     """Return the last positive value at which something holds, by halving the ratio of two that enclose it.
 
-    Parameters
-    ----------
-    holds
-        Whether it holds at a value.
-    inside, outside
-        Values at which it does and does not, in either order.
-    tolerance
-        Relative distance of the two ends from which on the inner one is returned.
+    It holds `inside` and not `outside`, whichever is larger; the inner end is returned to a relative `tolerance`.
     """
     while abs(outside / inside - 1) > tolerance:
         middle = math.sqrt(inside * outside)

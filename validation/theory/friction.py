@@ -1,4 +1,4 @@
-"""Closed forms of a block on an incline with Coulomb's friction, written apart from the solvers.
+"""Closed forms of a block on an incline with Coulomb's friction.
 
 Gravity is g (sin b, -cos b) along and across the base. While every corner slips downhill or, without cohesion, is open,
 the resultants of the contact obey T + tan(phi) N = -c a, whatever bounces: the sum u_t + tan(phi) u_n of the centroid's
@@ -47,10 +47,7 @@ def adhesion(scene: Scene) -> float:
 
 
 def sliding_acceleration(scene: Scene) -> float:
-    """Acceleration a_s of a sliding block, downhill on either side [m/s2]; negative where the block stands.
-
-    g (sin |b| - tan(phi) cos b) - c a / m, the cohesion acting over the whole base.
-    """
+    """Acceleration a_s of a sliding block, downhill on either side [m/s2]; negative where the block stands."""
     return abs(along(scene)) - coefficient(scene) * across(scene) - adhesion(scene)
 
 
@@ -140,7 +137,7 @@ def ringing_decay(scene: Scene) -> float:
 def damped_creep(scene: Scene) -> float:
     """Way g / w_n t_s that a stable block creeps until its damped ringing unloads the friction no more [m].
 
-    The weight comes on at once, so that the normal force swings between nothing and twice its rest; the block stands
+    Under a weight that comes on at once the normal force swings between nothing and twice its rest; the block stands
     once it stays above tan(b) / tan(phi) of its rest: t_s = ln(tan(phi) / (tan(phi) - tan(b))) / decay.
     """
     friction = coefficient(scene)
@@ -148,7 +145,7 @@ def damped_creep(scene: Scene) -> float:
     return creep_scale(scene) * math.log(friction / (friction - slope)) / ringing_decay(scene)
 
 
-# ---- the discount as a drag -----------------------------------------------------------------------------------------
+# ---- the discount as a drag ----
 
 
 def drag_rate(scene: Scene) -> float:
@@ -191,7 +188,7 @@ def free_motion(scene: Scene, acceleration: float) -> ArrayPair:
 def distance_share(gg: float, step: float, time: float) -> float:
     """Return the distance of a body that falls or slides from rest with a discount over that without [-].
 
-    The sum of V_n = dt a (1 - gg^n) / (1 - gg) over that of V_n = n dt a.
+    The sum of the V_n of `free_motion` over that of n dt a.
     """
     n = max(round(time / step), 1)
     if gg == 1:

@@ -55,13 +55,7 @@ STRAIN = np.array([0.0, 1.0])  # diagonal of the stiffness without springs
 
 
 def stiffness_ratio(scene: Scene, stiffness: float | None = None) -> float:
-    """Return k = 2 p h / (E' a), the stiffness of the springs over that of the block [-].
-
-    Raises
-    ------
-    FloatingPointError
-        It is below the smallest number of double precision.
-    """
+    """Return k = 2 p h / (E' a) [-], or raise FloatingPointError where it is below the range of double precision."""
     modulus, _ = statics.moduli(scene)
     p = scene.contact.stiffness if stiffness is None else stiffness
     ratio = 2 * p * statics.height(scene) / (modulus * scene.block.base_length)
@@ -70,7 +64,7 @@ def stiffness_ratio(scene: Scene, stiffness: float | None = None) -> float:
     return ratio
 
 
-# ---- the block's own landing --------------------------------------------------------------------------------------
+# ---- the block's own landing ----
 
 
 @dataclass(frozen=True)
@@ -119,10 +113,9 @@ class _Motion:
 
 @functools.lru_cache(maxsize=512)
 def own_landing(ratio: float) -> OwnLanding:
-    """Return the landing of the block of one strain on springs of the stiffness ratio k = 2 p h / (E' a).
+    """Return the landing of the block of one strain on springs of the stiffness ratio k.
 
-    Each stretch between two switches is a sum of two modes; its end is bracketed on a grid of sixtieths of the
-    shorter period, which are divided again and again. A rigid stop is `rigid_stop`.
+    Each stretch between two switches is a sum of two modes. A rigid stop is `rigid_stop`.
     """
     if ratio < SOFTEST:
         return OwnLanding(1.0, 1.0, 2 - ratio / 4, math.pi / math.sqrt(ratio) * (1 + ratio / 8), 1)
@@ -205,10 +198,7 @@ def rigid_stop() -> tuple[float, ...]:
 
 
 def contact_frequency(scene: Scene, stiffness: float | None = None) -> float:
-    """Return w_c, pi over the duration of the block's first contact [rad/s]; infinite for a rigid stop.
-
-    It tends to sqrt(8 p / m) for p >> E and to sqrt(2 p / m) for p << E.
-    """
+    """Return w_c, pi over the duration of the block's first contact [rad/s]; infinite for a rigid stop."""
     ratio = stiffness_ratio(scene, stiffness)
     if math.isinf(ratio):
         return math.inf
@@ -275,7 +265,7 @@ def hidden_from(scene: Scene) -> float | None:
     return free * math.sqrt((1 - weight / 2) / (1 + weight))
 
 
-# ---- the landing of a time step ------------------------------------------------------------------------------------
+# ---- the landing of a time step ----
 
 
 @dataclass(frozen=True)
@@ -294,18 +284,10 @@ class SteppedLanding:
 
 
 def stepped_landing(stepping: Stepping, ratio: float, step: float, transit: float) -> SteppedLanding | None:
-    """Return what a time step makes of the block's landing on springs of the stiffness ratio k.
+    """Return what a time step makes of the block's landing at the stiffness ratio k, infinite for a rigid stop.
 
-    None where it takes more than `MOST` steps.
-
-    Parameters
-    ----------
-    stepping
-        The scheme, with alpha > 0 or an implicit contact force.
-    ratio
-        k = 2 p h / (E' a), infinite for a rigid stop.
-    step, transit
-        dt and h / c [s].
+    The scheme has alpha > 0 or an implicit contact force; step and transit are dt and h / c [s]. None where the
+    landing takes more than `MOST` steps.
     """
     is_rigid = math.isinf(ratio)
     if _steps(0.0 if is_rigid else own_landing(ratio).duration, step / transit) > MOST:
@@ -379,7 +361,7 @@ def _step_matrices(stepping: Stepping, gg: float, tau: float, ratio: float) -> t
 def springs_for(scene: Scene, speed: float, penetration: float) -> float:
     """Return the p at which an unloaded landing at a speed goes as deep as a penetration [N/m].
 
-    x = D V sqrt(m / (8 p)), with D from 2 (p << E) to 1.47 (p >> E, where the second contact in a row is the deepest).
+    x = D V sqrt(m / (8 p)), with the D of `OwnLanding.depth`, from 2 (p << E) to 1.47 (p >> E).
     """
     quarter = speed**2 * scene.block.mass / (8 * penetration**2)
     p = 4 * quarter  # the whole mass

@@ -26,10 +26,7 @@ STEPS = 10  # in which the greatest energy is looked for; it is that of the firs
 def greatest_rise(stages: Stages, omegas_dt: Sequence[float], shares: Sequence[float]) -> float:
     """Return the greatest energy of some modes together above that of a consistent start, over what the load gives [-].
 
-    Parameters
-    ----------
-    omegas_dt, shares
-        W = w dt of each mode, and its share of the static response.
+    Of each mode W = w dt is in `omegas_dt`, its share of the static response in `shares`.
     """
     square = np.array(omegas_dt) ** 2  # x_s and dt are 1
     motion = (0 * square, 0 * square, square)

@@ -68,12 +68,7 @@ def midpoints(count: int) -> Array:
 def spring_steps(stages: Stages, omega: float | Array, zeta: float = 0.0) -> Advance:
     """Return the step on a spring, with a dashpot if zeta > 0, or on a rigid stop if omega is infinite.
 
-    Parameters
-    ----------
-    stages
-        The scheme, of `validation.theory.stages`.
-    omega
-        W = sqrt(k/m) dt, finite in an explicit scheme, or an array of finite ones, one for each phase.
+    W = omega is finite in an explicit scheme, or an array of finite numbers, one for each phase.
     """
     is_rigid = bool(np.any(np.isinf(omega)))
 
@@ -110,10 +105,7 @@ def pressing_force(omega: float | Array, zeta: float, x: Array, v: Array, C: flo
 def conserving_steps(omega: float | Array) -> Advance:
     """Return the step of energy-conserving contact (Armero and Petocz 1998), N = -(U1 - U0)/(x1 - x0).
 
-    Raises
-    ------
-    ValueError
-        If omega is infinite: a rigid stop stores no energy.
+    Raises ValueError for infinite omega: a rigid stop stores no energy.
     """
     if np.any(np.isinf(omega)):
         raise ValueError("omega: must be finite with energy-conserving contact, got inf")

@@ -19,13 +19,7 @@ DIGITS = 4 * 2.0**-52  # of the damping ratio, as many as the search has
 
 
 def restitution(zeta: float) -> float:
-    """Return e of a damping ratio.
-
-    Raises
-    ------
-    ValueError
-        If zeta is negative or not a number.
-    """
+    """Return e of a damping ratio, or raise ValueError where that is negative or not a number."""
     if not zeta >= 0:
         raise ValueError(f"damping_ratio: must not be negative, got {zeta!r}")
     return 0.0 if math.isinf(zeta) else math.exp(-zeta * contact_time(zeta))
@@ -42,12 +36,9 @@ def contact_time(zeta: float) -> float:
 
 
 def damping_ratio(e: float) -> float:
-    """Return zeta of a restitution; 0 at e = 1.
+    """Return zeta of a restitution, 0 at e = 1.
 
-    Raises
-    ------
-    ValueError
-        If e is not above 0 and at most 1: no dashpot stops a block for good, zeta goes to infinity as 1/(2 sqrt(e)).
+    Raises ValueError unless 0 < e <= 1: no dashpot stops a block for good, zeta goes to infinity as 1/(2 sqrt(e)).
     """
     if not 0 < e <= 1:
         raise ValueError(

@@ -53,14 +53,9 @@ class Rectangle:
         return math.sqrt(1.5 * self.gravity * rise) / radius
 
     def greatest_rotation(self, spin: float) -> float:
-        """Return the tilt at which a block that was started about a corner turns back [rad].
+        """Return the tilt at which a block that was started about a corner turns back [rad]; ValueError if it does not.
 
         w^2 / 2 + P^2 cos(alpha) = P^2 cos(alpha - theta).
-
-        Raises
-        ------
-        ValueError
-            It does not turn back.
         """
         ratio = spin / self.critical_spin
         if abs(ratio) >= 1:

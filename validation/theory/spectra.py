@@ -1,7 +1,6 @@
 """First frequencies of block, bar and mesh, and what one step of Newmark's scheme makes of them.
 
-They hold for the paper's block, an upright rectangle on its lower edge under vertical pressure, and are code of
-their own, so that a slip in a solver cannot hide in its gate.
+They hold for the paper's block, an upright rectangle on its lower edge under vertical pressure.
 """
 
 from __future__ import annotations
@@ -150,8 +149,8 @@ def bar_response(scene: Scene, omega: Array) -> Array:
 def mesh_error(scene: Scene) -> dict[str, float]:
     """Relative L2 errors of quadratic elements against the bar, by quantity, predicted from their dispersion alone.
 
-    Each mode's frequency is high by (b/n)^4 / 1440 (with the first factor of `mesh_frequency_error`), its share is
-    right; the histories of all modes that the mesh can hold, with and without that shift, are compared.
+    Each mode's frequency is high by (b/n)^4 / 1440 (with the first factor of `mesh_frequency_error`), its share right;
+    compared are the histories of all modes that the mesh can hold, with and without that shift.
     """
     E, _ = moduli(scene)
     b = bar_modes(scene, 2 * scene.fem.per_side)

@@ -1,4 +1,4 @@
-r"""The time schemes as tables of numbers, written apart from the solvers.
+r"""The time schemes as tables of numbers.
 
 A step is one stage, or two in a row. With the start (x, v, a) of the step and u = gg v, and the end (x_g, v_g, a_g)
 of the stage before, a stage makes in units of the step
@@ -50,12 +50,8 @@ Stages = tuple[Stage, ...]
 def step_end(stages: Stages, x: Any, u: Any, a: Any, square: Any = 0.0, load: Any = 0.0) -> tuple[Any, Any, Any]:
     """Return x, v and a at the end of a step of x'' + W^2 x = load, in units of the step; any may be arrays of modes.
 
-    Parameters
-    ----------
-    x, u, a
-        Displacement, discounted velocity and acceleration at its start.
-    square, load
-        W^2 = (w dt)^2 of a mode, 0 of a free body, and the load over the mass times dt^2.
+    x, u, a are displacement, discounted velocity and acceleration at its start, `square` is W^2 = (w dt)^2, 0 of a free
+    body, and `load` that over the mass times dt^2.
     """
     end = (x, u, a)
     for stage in stages:

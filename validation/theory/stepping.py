@@ -1,4 +1,4 @@
-r"""A time step of a scheme and what it makes of a harmonic motion, written apart from the solvers.
+r"""A time step of a scheme and what it makes of a harmonic motion.
 
 With M A + C V + K D = F e^{iwt} taken at the steps, z = e^{iw dt} and gg times V at the start of each step,
 
@@ -199,16 +199,10 @@ class Stepping:
         """The numbers in words."""
         return f"dt = {self.step:.6g} s, {self.name}, gg = {self.gg:.9g}"
 
-    # ---- vibration at a given frequency --------------------------------------------------------------------------
+    # ---- vibration at a given frequency ----
 
     def squared_frequency(self, omega: ArrayLike) -> Complex:
-        """Return W2 [1/s^2] at angular frequencies w [rad/s]: A = -W2 D.
-
-        Raises
-        ------
-        InputError
-            The scheme is composite, which has none.
-        """
+        """Return W2 [1/s^2] at angular frequencies w [rad/s], A = -W2 D; InputError of composite schemes."""
         half = 0.5 * self.step * np.asarray(omega, float)
         turn = 2j * np.sin(half) * np.exp(1j * half)  # z - 1 without subtraction
         above = turn * ((1 - self.gg) + turn)  # (z - 1)(z - gg)
@@ -222,12 +216,7 @@ class Stepping:
     def velocity_factor(self, omega: ArrayLike) -> Complex:
         """Return S [1/s] of V = S D, which is i w in exact time: -W2 dt ((1 - gamma) + gamma z) / (z - gg).
 
-        Of the leapfrog V is the mean of the half steps beside it.
-
-        Raises
-        ------
-        InputError
-            The scheme is composite, which has none.
+        Of the leapfrog V is the mean of the half steps beside it. Raises InputError of composite schemes.
         """
         half = 0.5 * self.step * np.asarray(omega, float)
         turn = 2j * np.sin(half) * np.exp(1j * half)
@@ -252,7 +241,7 @@ class Stepping:
             )
         return numbers
 
-    # ---- free vibration ------------------------------------------------------------------------------------------
+    # ---- free vibration ----
 
     def roots(self, omega_dt: float) -> Complex:
         """Return the factors z of a free motion over a step at W = w dt, the principal pair first.

@@ -1,4 +1,4 @@
-"""Closed forms of an upright rectangle on its springs under a pressure that vibrates, written apart from the solvers.
+"""Closed forms of an upright rectangle on its springs under a pressure that vibrates.
 
 Each takes squared frequencies W2 [1/s^2], w^2 in exact time or what the steps make of it, for mu = 0, and returns the
 complex amplitudes of displacement [m] and contact pressure [Pa], with a bound of their conditioning: how many times a

@@ -1,4 +1,4 @@
-r"""Closed forms of steady vibrations and waves under the Newmark scheme, written apart from the solvers.
+r"""Closed forms of steady vibrations and waves under the Newmark scheme.
 
 Those of a time step are in `theory.stepping`. Frequencies, steps and moduli may be arrays; everything is in SI units.
 """

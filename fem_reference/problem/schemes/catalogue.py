@@ -31,7 +31,7 @@ def named_scheme(
     rho_inf: float | None = None,
     split: float | None = None,
 ) -> Scheme:
-    """Return a scheme by its name.
+    """A scheme by its name.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ def named_scheme(
     Raises
     ------
     ValueError
-        For an unknown name, or a value out of its range or not of the scheme, naming field, rule and value.
+        For an unknown name, or a value out of its range or not of the scheme.
 
     Examples
     --------

@@ -17,7 +17,7 @@ from fem_reference.problem.stages import Stage, StageTable
 
 
 def composite(rho_inf: float | None, split: float | None) -> StageTable:
-    """Return the composite scheme for a radius (0 where it is absent) and the end of its first stage."""
+    """The composite scheme for a radius (0 where it is absent) and the end of its first stage."""
     r = 0.0 if rho_inf is None else float(rho_inf)
     if not 0 <= r <= 1:
         raise ValueError(f"rho_inf: must be from 0 to 1 for 'composite', got {rho_inf!r}")

@@ -25,7 +25,7 @@ LAGS: dict[str, tuple[float, Callable[[float], tuple[float, float]]]] = {
 
 
 def generalised_alpha(name: str, rho_inf: float | None, split: float | None) -> StageTable:
-    """Return one of these schemes for a radius rho_inf of the fastest modes."""
+    """One of these schemes for a radius rho_inf of the fastest modes."""
     if split is not None:
         raise ValueError(f"split: belongs to the composite scheme, must be absent for {name!r}, got {split!r}")
     least, lags = LAGS[name]

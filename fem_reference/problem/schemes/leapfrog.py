@@ -11,7 +11,7 @@ from fem_reference.problem.stages import Stage, StageTable
 
 
 def leapfrog(rho_inf: float | None, split: float | None) -> StageTable:
-    """Return the leapfrog, which has no parameter."""
+    """The leapfrog, which has no parameter."""
     for field, value in (("rho_inf", rho_inf), ("split", split)):
         if value is not None:
             raise ValueError(f"{field}: must be absent for 'leapfrog', which has no parameter, got {value!r}")

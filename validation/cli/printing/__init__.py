@@ -1,4 +1,4 @@
 """What commands print: the answer of a run, tables, lists, a scene's page; and the stream that takes it.
 
-Text only: what it says was computed by the rooms below. A command's own few lines stay with the command.
+What it says was computed by the rooms below. A command's own few lines stay with the command.
 """

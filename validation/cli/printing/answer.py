@@ -31,31 +31,15 @@ WORDS = tuple(str(status) for status in (Status.PASS, Status.FAIL, Status.NOT_RU
 
 @dataclass(frozen=True)
 class RunAnswer:
-    """Studies as one command ran them, and what is to be said of them.
-
-    Attributes
-    ----------
-    runs, seconds
-        The studies with verdicts and outcomes, and the seconds that each took now.
-    results
-        Where finished cases, verdicts and alarms are kept.
-    messages
-        Sentences on what was not measured.
-    changes
-        What differs from the baseline; None without one.
-    user_scenes
-        Names of the runs that are a user's scenes or built-in ones, not studies of the suite.
-    status
-        Exit status.
-    """
+    """Studies as one command ran them, and what is to be said of them."""
 
     runs: Sequence[JudgedStudy]
-    seconds: Sequence[float]
-    results: Results
-    messages: Sequence[str]
-    changes: Sequence[Change] | None
-    user_scenes: frozenset[str]
-    status: int
+    seconds: Sequence[float]  # that each took now
+    results: Results  # with finished cases, verdicts and alarms
+    messages: Sequence[str]  # sentences on what was not measured
+    changes: Sequence[Change] | None  # since the baseline; None without one
+    user_scenes: frozenset[str]  # names of the runs that are scenes, a user's or built-in, not studies of the suite
+    status: int  # exit status
 
     @property
     def names(self) -> list[str]:
@@ -140,7 +124,7 @@ def how_it_ended(scene: str, solver: str, outcome: Outcome, notes: Sequence[str]
     return printable(f"{scene} {solver}: {outcome}: {outcome.sentence} {'; '.join(notes)}")
 
 
-# ---- the summary --------------------------------------------------------------------------------------------------
+# ---- the summary ----
 
 
 def summary(answer: RunAnswer, width: int) -> Iterator[StyledLine]:
@@ -168,7 +152,7 @@ def _tail(answer: RunAnswer, width: int) -> Iterator[StyledLine]:
     if len(reasons) > 2:
         yield f"NOT RUN for {len(reasons) - 2} more reasons; --verbose shows every one", "NOT RUN"
     yield from _ended(answer, width)
-    # The kinds of alarm with the number of cases, and for own scenes the first sentence of each kind.
+    # for own scenes the first sentence of each kind of alarm, too
     kinds = alarm_kinds(answer)
     if kinds:
         words = ", ".join(f"{kind} in {n} case{'s' * (n > 1)}" for kind, n in kinds.items())
@@ -241,7 +225,7 @@ def next_commands(answer: RunAnswer) -> list[str]:
     return [report] if answer.user_scenes else [report, "the same command with --verbose lists every gate"]
 
 
-# ---- for machines --------------------------------------------------------------------------------------------------
+# ---- for machines ----
 
 
 def as_data(answer: RunAnswer) -> dict[str, Any]:

@@ -4,8 +4,7 @@ A row has the standard deviation sigma, sigma^2 = unit^2 / 12 + noise^2 + (1e-8 
 of double precision. A column is explained if no row is beyond its last digit, or if what remains is no larger than
 sigma, or hardly larger and white, and has no row beyond six sigma. The noise is what the column shows by itself: any
 linear model of one block obeys one recurrence of low order, so that the Hankel matrix of its samples has that rank; the
-singular values beyond it are noise, whatever the model. A remainder that is larger, or that still has a shape, is a
-cause not found.
+singular values beyond it are noise, whatever the model.
 """
 
 from __future__ import annotations
@@ -25,13 +24,13 @@ ARITHMETIC = 1e-8  # of the largest value: half the digits of double precision, 
 WINDOW = 24  # samples: twice the order of the recurrence (static value, four modes, rows at rest)
 FEWEST = 16  # samples: eight of a window, four powers
 LONGEST = 600  # samples that the noise is estimated from
-MARGIN = 1.6  # of the estimated noise: some tens of singular values tell it to a fifth, least squares take some more
+MARGIN = 1.6  # of the estimated noise: tens of singular values tell it to a fifth, least squares take more
 LAGS = 10
 SHAPELESS = 4.0  # standard deviations of Ljung and Box's statistic: one white remainder in ten thousand exceeds it
 MEDIAN = 1.4826  # standard deviation of normal noise over the median of its absolute values
 OUTLYING = 6.0  # spreads: of ten million rows of normal noise none is farther away
 ROUNDED = 0.5  # last digits: the most that rounding leaves
-LOST_ROWS = 20  # rows of which at most one is told as a wrong one; of more the whole history is in question
+LOST_ROWS = 20  # rows of which at most one is told as wrong; with more the whole history is in question
 AROUND = 2  # rows at the start, where what dies out stands out too
 
 
@@ -105,7 +104,7 @@ def white(remainder: Array) -> bool:
 
 
 def spread_of_most(remainder: Array) -> float:
-    """Return the spread of most rows of a remainder, by their median: a few wrong rows do not excuse themselves."""
+    """Return the spread of a remainder by its median: a few wrong rows do not excuse themselves."""
     return MEDIAN * float(np.median(np.abs(remainder))) if len(remainder) else 0.0
 
 
@@ -133,8 +132,8 @@ class Bar:
     def deviation(self, remainder: Array | None = None) -> Array:
         """Return the standard deviation of each row: of its digits, the noise, and the solver's own error.
 
-        One wrong row widens the noise of the column itself, and so does contact that switches: not that of most rows of
-        a remainder, where one is given.
+        Where a remainder is given, the noise is at most the spread of most of its rows: one wrong row, or contact that
+        switches, widens the noise of the column itself.
         """
         spread = self.spread
         if remainder is not None:
@@ -153,7 +152,7 @@ class Bar:
         return MARGIN * norm(self.deviation()) / self.norm
 
     def holds(self, remainder: Array) -> bool:
-        """Whether a remainder is digits and noise: no row beyond its last digit, or white and no larger than noise."""
+        """Whether a remainder is digits and noise, as the head of this module says."""
         if np.all(np.abs(remainder) <= ROUNDED * self.rounding + ARITHMETIC * self.size):
             return True
         if np.any(self.outlying(remainder)):

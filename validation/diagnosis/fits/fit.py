@@ -1,9 +1,9 @@
 """Which scheme made a history: least-squares fits of many variants at once, compared by what each one explains.
 
-A fit minimises the relative L2 difference between a history and a `Variant` over the variant's free numbers
-(Levenberg-Marquardt, all fits advancing together because one pass through the steps serves them all). The intervals
-are 95 % ones of the linearised problem, with the residual's own correlation taken into account: n rows whose
-residual has the lag-one correlation r count as n (1 - r) / (1 + r) independent ones.
+A fit minimises the relative L2 difference between a history and a `Variant` over the variant's free numbers by the
+method of Levenberg and Marquardt, all fits at once because one pass through the steps serves them all. The intervals
+are 95 % ones of the linearised problem: n rows whose residual has the lag-one correlation r count as
+n (1 - r) / (1 + r) independent ones.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ NAMED: dict[str, tuple[float, float]] = {
 NUMBERS = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
 SPAN: dict[str, float] = {name: row["span"] for name, row in NUMBERS.items()}
 LEAST_FACTOR, LARGEST_FACTOR = 1e-7, 1e7  # of what has no range of its own: other units
-DIFFERENCE = 1e-6  # of the spans, for the Jacobian: root of the rounding of a relative history, about
+DIFFERENCE = 1e-6  # of the spans, for the Jacobian: about the root of the rounding of a relative history
 NORMAL_95 = 1.96
 UNFELT = 1e-12  # of the largest curvature: keeps the equations of a number without effect solvable
 SETTLED = 1e-3  # share of a misfit: a fit that gains less has arrived
@@ -73,17 +73,7 @@ class Interval:
 
 
 def fit(target: Target, starts: Sequence[tuple[Variant, tuple[str, ...]]], rounds: int = 8) -> list[Fit]:
-    """Fit variants with their free numbers, all at once.
-
-    Parameters
-    ----------
-    target
-        The history.
-    starts
-        Variants with the names of the numbers that are free in each.
-    rounds
-        Steps of Levenberg and Marquardt's method.
-    """
+    """Fit variants, each with the names of its free numbers, in some rounds of Levenberg and Marquardt's method."""
     goal = target.values
     best = _linearised(target, starts, goal)
     damping = [1e-4] * len(best)
@@ -166,7 +156,7 @@ def is_factor(name: str) -> bool:
 
 
 def changed(variant: Variant, changes: Mapping[str, Any]) -> Variant:
-    """Return a variant with some fields replaced, by name."""
+    """Return a variant with some fields replaced."""
     return replace(variant, **changes)
 
 
@@ -187,7 +177,7 @@ def intervals(solution: Fit) -> dict[str, Interval]:
     widths = np.sqrt(np.sum(parts**2, axis=1))
     intervals_by_name = {}
     for name, width in zip(solution.free, widths.tolist(), strict=True):
-        # of a number without effect nothing is known, also where nothing is left
+        # nothing is known of a number without effect, also where nothing is left
         half = NORMAL_95 * sigma * width * SPAN[name] if math.isfinite(width) else math.inf
         intervals_by_name[name] = Interval(float(getattr(solution.variant, name)), half)
     return intervals_by_name

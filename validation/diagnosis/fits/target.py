@@ -1,4 +1,4 @@
-"""A history that is to be explained: its rows, what digits and noise may leave of them, what variants show there."""
+"""A history that is to be explained: its rows, what may remain of them, what variants show there."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def norm(values: Array) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Target:
-    """What is to be explained: recorded rows of one or two columns.
+    """Recorded rows of one or two columns that are to be explained.
 
     Joined rows are those of all columns, one below the other, over their norms: the squares of the recorded ones sum to
     one.
@@ -75,7 +75,7 @@ class Target:
         for first in range(0, len(variants), CHUNK):
             stepped = histories(self.column, variants[first : first + CHUNK], self.steps)
             both = [stepped.displacement[self.rows], stepped.pressure[self.rows]]
-            with np.errstate(all="ignore"):  # variants that grow beyond what a double holds are far from any history
+            with np.errstate(all="ignore"):  # variants that grow beyond a double are far from any history
                 columns.append(self.join(np.array(both[: len(self.recorded)])))
         return np.nan_to_num(np.hstack(columns), nan=1e6).clip(-1e6, 1e6)
 
@@ -96,7 +96,7 @@ class Target:
     def outlying(self, joined: Array) -> NDArray[np.bool_] | None:
         """Return the rows of each column that stand out of what remains; None where none do, or not as single rows.
 
-        Single rows are few, no more than two beside one another, and not the first ones, where any motion begins.
+        Single rows are few, at most two beside one another, and not the first ones, where any motion begins.
         """
         rows = np.array([bar.outlying(part) for bar, part in zip(self.bars, self.parts(joined), strict=True)])
         most = int(np.max(np.sum(rows, axis=1)))
@@ -117,7 +117,7 @@ class Target:
         return inner_rows.ravel()
 
     def deviations(self, joined: Array) -> Array:
-        """Return the standard deviation of every row of each column, their noise no larger than a remainder has it."""
+        """Return the standard deviation of every row of each column, as `Bar.deviation` has it for a remainder."""
         return np.array([bar.deviation(part) for bar, part in zip(self.bars, self.parts(joined), strict=True)])
 
     @cached_property

@@ -16,7 +16,7 @@ from validation.runs.row import Row
 from validation.scenes.scene import Scene
 from validation.theory import statics
 
-LONG_RAMP = 40.0  # w times the ramp: a load that rises so slowly moves the mode by 2 / 40 = 5 % of its static part
+LONG_RAMP = 40.0  # w times the ramp: so slow a load moves the mode by 2 / 40 = 5 % of its static part
 MOST_SUB_BLOCKS = 64  # whose modes are found here; those of more come from the run
 
 
@@ -73,7 +73,7 @@ def _moves_as_a_whole(scene: Scene) -> bool:
 
 
 def _is_driven_slowly(scene: Scene) -> bool:
-    """Whether nothing but a record moves the block: its samples hold no more than the step shows."""
+    """Whether a record alone moves the block: its samples hold no more than the step shows."""
     load = scene.load
     return load.base_motion is not None and load.gravity == 0 and load.pressure == 0 and not load.off_centre
 

@@ -27,7 +27,7 @@ class HOOKS(DiagnosisHooks):
         return numbers_of_column(scene)
 
     def numbers_of_layers(self, scene: Scene) -> Iterator[Number]:
-        """Yield the densities of layers, where they differ, each by itself."""
+        """Yield the densities of layers, where they differ."""
         return numbers_of_layers(scene)
 
     def laws(self, scene: Scene) -> Iterator[CandidateChange[Values]]:

@@ -41,8 +41,8 @@ class HOOKS(PageHooks):
 def recommended_cut(scene: Scene, error: float, frequency: float | None = None) -> tuple[str, Recommendation]:
     """Return what the blocks and the step of a bonded column do to a wave, and which to take.
 
-    Half of the error is left to the amplitude of the wave, half to its phase: a wave that is late by a share of its
-    period is off by 2 pi of that. What is advised is run under the scene's own input.
+    Half of the error is left to the amplitude of the wave, half to its phase: a delay of a share of a period is an
+    error of 2 pi of that. What is advised is run under the scene's own input.
 
     Raises
     ------

@@ -51,7 +51,7 @@ def _changes_of_contacts(scene: Scene, column: ColumnSection, factor: float) -> 
 
 
 def _numbers_of_contacts(scene: Scene) -> Iterator[Number]:
-    """Yield what the contacts of a column come to: what opened or slipped in the end, the largest force, the motion."""
+    """Yield what the contacts of a column come to: slip and gap in the end, the largest force, the motion."""
     for part in ("slip", "gap", "force", "velocity", DISPLACEMENT):
         for name in reversed(scene.run.columns):  # the uppermost first, which moves most
             if split(name)[0] != part:

@@ -120,7 +120,6 @@ def _layer(scene: Scene, place: str, speed: float, height: float) -> Iterator[Nu
 
 
 def _contacts(scene: Scene) -> Iterator[Number]:
-    """Yield what is known of contacts that open or slip."""
     bounds = AdviceHooks.of(scene).contact_limits(scene)
     if bounds is None:
         return

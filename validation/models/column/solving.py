@@ -78,7 +78,7 @@ class HOOKS(SolvingHooks):
 
 
 def _drive_instants(scene: Scene) -> Array:
-    """Return instants of the run, close enough that a drive that varies within a step is seen [s]."""
+    """Return instants of the run, close enough for a drive that varies within a step [s]."""
     t = scene.time
     instants = t.step * np.arange(t.steps + 1.0)
     if scene.stated_input is None:

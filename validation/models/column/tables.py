@@ -21,8 +21,8 @@ from validation.scenes.tables import (
 )
 
 MOST_HEIGHTS = 99  # at which a history may look
-NEAR = 1e-9  # of the column's height: how near a joint or height must be to the face that is meant
-BlockCount = Annotated[Count, Field(le=100_000)]  # of a layer: faces are lists, made before memory is predicted
+NEAR = 1e-9  # of the column's height: how near a joint or height must be to its face
+BlockCount = Annotated[Count, Field(le=100_000)]  # of a layer: lists are made before memory is predicted
 THINNEST = 1e-6  # block, of the height: its elements, hundreds at most, must be longer than `NEAR`
 OPENS, SLIPS, MOVES = 'law = "unilateral"', 'law = "frictional"', 'law = "unilateral" or "frictional"'
 
@@ -202,7 +202,7 @@ class ColumnSection(Section):
 
     @property
     def plain_faces(self) -> list[float]:
-        """Heights of the faces without a joint, at which a block stands on another one or on the base [m]."""
+        """Heights of the faces without a joint, between blocks or on the base [m]."""
         lowest = 1 if self.base in ("transmitting", "free") else 0
         near = NEAR * self.height
         jointed = [joint.height for joint in self.springs]
@@ -219,7 +219,7 @@ class ColumnSection(Section):
         return tuple(sorted(contacts, key=lambda contact: contact.height))
 
     def _contact(self, height: float, stated: ColumnSection | JointSection) -> Contact:
-        """Return the contact at a height [m] with the numbers that a joint, or the column for all others, states."""
+        """Return the contact at a height [m] with the numbers that a joint, or else the column, states."""
         strength = math.inf if stated.strength is None else stated.strength
         if stated.friction is not None:
             strength = math.tan(math.radians(stated.friction)) * self.static_stress(height)

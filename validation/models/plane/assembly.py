@@ -21,7 +21,7 @@ from validation.scenes.unknown import did_you_mean
 
 OVERLAP = 0.01  # of the thinner block: deeper, and no compression of springs at the start explains it
 Members = Mapping[str, Sequence[int]]
-TOUCHING = 1e-6  # of the thinner block: nearer blocks touch, and edges that are so near are one
+TOUCHING = 1e-6  # of the thinner block: nearer blocks touch, and nearer edges are one
 
 
 class StatedContact(NamedTuple):
@@ -87,18 +87,12 @@ class Assembly:
 
     @property
     def pose_columns(self) -> tuple[str, ...]:
-        """Return the columns of a history that a scene keeps if it does not say: the poses of what may move."""
+        """Return the columns of a history if the scene does not say: the poses of what may move."""
         return tuple(f"{block.name}.{part}" for block in self.moving for part in POSE)
 
 
 def placed_blocks(plane: PlaneContents) -> tuple[tuple[PlacedBlock, ...], Members]:
-    """Return the blocks where they are at t = 0, and the numbers of those that each name means.
-
-    Raises
-    ------
-    ValueError
-        Two blocks have one name.
-    """
+    """Return the blocks where they are at t = 0, and the numbers of each name; a ValueError if two blocks share one."""
     blocks: list[PlacedBlock] = []
     members: dict[str, list[int]] = {}
     for name, group, section in _sections(plane):
@@ -132,8 +126,8 @@ def assembled(plane: PlaneContents) -> Assembly:
     ------
     ValueError
         "field: rule, got value": a name is no block's, blocks overlap, a bond joins what does not touch, a corner is
-        not in front of the edge that it may press on, a block touches nothing and nothing moves it, or springs are
-        so soft that a block falls through another one.
+        not in front of its edge, a block touches nothing and nothing moves it, or springs are so soft that a block
+        falls through another one.
     """
     blocks, members = placed_blocks(plane)
     assembly = Assembly(blocks, members, plane.contact, {})
@@ -170,7 +164,7 @@ def _one(members: Members, name: str, field: str) -> int:
 
 
 def _bonds(plane: PlaneContents, assembly: Assembly) -> Iterator[Bond]:
-    """Yield the bonds that a scene states, and the glue of blocks that are cut."""
+    """Yield the stated bonds, and the glue of blocks that are cut."""
     blocks = assembly.blocks
     members = assembly.members
     for number, bond in enumerate(plane.bond):
@@ -225,11 +219,11 @@ def _loads(plane: PlaneContents, assembly: Assembly) -> Iterator[BlockLoad]:
 
 
 def _edge_parts(block: PlacedBlock, edge: Segment) -> Iterator[Segment]:
-    """Yield the parts of a line that are edges of a block: of either direction along it."""
+    """Yield the parts of a line that are edges of a block, in either direction."""
     tolerance = TOUCHING * block.thickness
     start, end = np.array(edge)
     across = tolerance * np.array([start[1] - end[1], end[0] - start[0]]) / np.hypot(*(end - start))
-    for side in (across, -across):  # a strip whose long side is the line, on one side of it and on the other
+    for side in (across, -across):  # a strip along the line, on one side of it and on the other
         strip = (start, end, end + side, start + side) if side is across else (end, start, start + side, end + side)
         corners = tuple((float(x), float(y)) for x, y in strip)
         for part in geometry.shared_edges(block.vertices, corners, tolerance / 2):
@@ -269,10 +263,7 @@ def _contacts(plane: PlaneContents, assembly: Assembly) -> Iterator[StatedContac
 def check(plane: PlaneContents, assembly: Assembly) -> None:
     """Check that blocks lie apart, that nothing rests for ever on nothing, and that springs hold what comes.
 
-    Raises
-    ------
-    ValueError
-        "field: rule, got value".
+    What does not is a ValueError, "field: rule, got value".
     """
     blocks = assembly.blocks
     if all(block.held for block in blocks):

@@ -26,32 +26,18 @@ LANDS_BY = "contact.restitution must be stated of a box that lands"
 
 @dataclass(frozen=True)
 class Box:
-    """A rigid rectangle of unit depth at t = 0; x along the ground, y upwards from it.
-
-    Attributes
-    ----------
-    width, height
-        Of the rectangle before it is turned [m].
-    density
-        Mass of a volume [kg/m3].
-    x, y, angle
-        Of the centre [m, m], and the rotation [rad], counter-clockwise.
-    lift
-        Height of the lowest corner above what is below [m].
-    velocity, spin
-        Of the centre [m/s] and about it [rad/s].
-    """
+    """A rigid rectangle of unit depth at t = 0; x along the ground, y upwards from it."""
 
     name: str
-    width: float
-    height: float
-    density: float
-    x: float
+    width: float  # before it is turned [m]
+    height: float  # the same [m]
+    density: float  # kg/m3
+    x: float  # of the centre [m]
     y: float
-    angle: float
-    lift: float
-    velocity: tuple[float, float]
-    spin: float
+    angle: float  # counter-clockwise [rad]
+    lift: float  # height of the lowest corner above what is below [m]
+    velocity: tuple[float, float]  # of the centre [m/s]
+    spin: float  # rad/s
 
     @property
     def mass(self) -> float:
@@ -79,36 +65,17 @@ class BoxesOnGround:
     """Rigid boxes above each other on a ground whose top is y = 0.
 
     A slope is gravity that leans: g (sin s, -cos s) in the frame of the ground.
-
-    Attributes
-    ----------
-    ground
-        Name of the block that is the ground.
-    boxes
-        From the lowest up.
-    pull
-        Acceleration of gravity along the ground and upwards [m/s2].
-    friction
-        Angle of friction of every contact [deg]; 90 where none slips.
-    restitution
-        Newton's, of every contact; None where the scene does not say.
-    stiffness
-        Of a box that lies on the ground, by its two corners [N/m]; None of rigid contact.
-    ends
-        The ground's least and greatest x [m].
-    base_amplitude, base_frequency
-        A [m] and f [Hz] of the ground's motion A (1 - cos(2 pi f t)) along itself; at rest without amplitude.
     """
 
-    ground: str
-    boxes: tuple[Box, ...]
-    pull: tuple[float, float]
-    friction: float
-    restitution: float | None
-    stiffness: float | None
-    ends: tuple[float, float]
-    base_amplitude: float
-    base_frequency: float
+    ground: str  # name of the block that is the ground
+    boxes: tuple[Box, ...]  # from the lowest up
+    pull: tuple[float, float]  # acceleration of gravity along the ground and upwards [m/s2]
+    friction: float  # angle of friction of every contact [deg]; 90 where none slips
+    restitution: float | None  # Newton's, of every contact; None where the scene does not say
+    stiffness: float | None  # of a box that lies on the ground, by its two corners [N/m]; None of rigid contact
+    ends: tuple[float, float]  # the ground's least and greatest x [m]
+    base_amplitude: float  # A [m] of the ground's motion A (1 - cos(2 pi f t)) along itself, 0 at rest
+    base_frequency: float  # f [Hz]
 
     def base(self, time: float) -> tuple[float, float]:
         """Return displacement [m] and velocity [m/s] of the ground along itself at an instant [s]."""
@@ -155,26 +122,14 @@ class BoxesOnGround:
 
 
 def boxes_of(scene: Scene) -> BoxesOnGround:
-    """Return the boxes on a ground that a scene is of.
-
-    Raises
-    ------
-    ValueError
-        It is of something else.
-    """
+    """Return the boxes on a ground that a scene is of; a ValueError if it is of something else."""
     if "plane" not in scene.tables():
         raise ValueError(f"it must be of boxes on a ground, got {scene.kind_in_words}")
     return boxes_on_ground(scene.table(PlaneSection))
 
 
 def boxes_on_ground(plane: PlaneSection) -> BoxesOnGround:
-    """Return the boxes on a ground that a table of the plane states.
-
-    Raises
-    ------
-    ValueError
-        It states something else.
-    """
+    """Return the boxes on a ground that a table of the plane states; a ValueError if it states something else."""
     others = [name for name in (*BODIES, "observe", "pair", "bond", "load", "touch") if getattr(plane, name)]
     if others or plane.ramp:
         raise ValueError(f"boxes on a ground must have one contact and weight alone, got {', '.join(others) or 'ramp'}")
@@ -203,13 +158,7 @@ def boxes_on_ground(plane: PlaneSection) -> BoxesOnGround:
 
 @functools.cache
 def harmonic(path: str) -> tuple[float, float]:
-    """Return A [m] and f [Hz] of a record that is A (1 - cos(2 pi f t)) along x.
-
-    Raises
-    ------
-    ValueError
-        It is another motion.
-    """
+    """Return A [m] and f [Hz] of a record that is A (1 - cos(2 pi f t)) along x; a ValueError if it is another."""
     from scipy.optimize import curve_fit
 
     record = read_record(Path(path))

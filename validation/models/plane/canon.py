@@ -35,7 +35,7 @@ DEPARTED = 1e-3  # m, by which a block has left its straight path
 TURNED = 2 * UNKNOWN  # rad: an edge is turned by it if both its ends are off by one per cent of its length
 
 
-# ---- the exact problem of a scene -----------------------------------------------------------------------------------
+# ---- the exact problem of a scene ----
 
 
 def moving_blocks(scene: Scene) -> list[PlacedBlock]:
@@ -144,7 +144,7 @@ def touch_of(scene: Scene) -> FirstTouch | None:
     return next(iter(first_touches(*polygons(scene), scene.time.duration, 0.0)), None)
 
 
-# ---- what is measured on answers ------------------------------------------------------------------------------------
+# ---- what is measured on answers ----
 
 
 def moved(history: History, block: PlacedBlock) -> Array:
@@ -221,7 +221,7 @@ def pushing(scene: Scene) -> tuple[JudgedNumber, ...]:
 
 
 def wedges(scene: Scene) -> tuple[JudgedNumber, ...]:
-    """Return the accelerations of two wedges that slide, over the last two thirds: put on at once, weight rings."""
+    """Return the accelerations of two wedges that slide, over the last two thirds, as weight rings at first."""
     exact = wedges_of(scene)
     numbers = []
     for block in moving_blocks(scene):
@@ -310,7 +310,7 @@ def touching(scene: Scene) -> tuple[JudgedNumber, ...]:
     block = scene.table(PlaneSection).assembly.blocks[0]
 
     def departure(history: History) -> tuple[int, Array]:
-        """Return the first row at which the block has left its straight path, and how far it is off there."""
+        """Return the first row at which the block has left its straight path, and by how much."""
         off = moved(history, block) - history.time[:, None] * np.array(block.velocity)
         rows = np.flatnonzero(np.linalg.norm(off, axis=1) > DEPARTED)
         row = int(rows[0]) if len(rows) else len(off)

@@ -9,10 +9,10 @@ highest frequency on that corner alone, the other side being fixed, is the large
 Where both sides move, the opening is a difference of two such displacements, and w^2 is at most the sum of both: that
 of the two fastest blocks bounds any one contact. A rigid square has w^2 = 4 p / m, a soft one of one strain 7 p / m.
 
-At rest one spring that carries all that moves gives way by W / p; a block that lands on one spring at the speed v sinks
-by v sqrt(m / p). Both are to stay below `OVERLAP` of a block's thickness, beyond which a scene is refused as one of
-blocks that lie in each other. The step is the longest at which a landing on a spring of that frequency, at any place in
-the step, gives back its speed to within the error (`validation.theory.rebound`).
+One spring that carries all that moves gives way by W / p; a block that lands on one at the speed v sinks by
+v sqrt(m / p). Both are to stay below `OVERLAP` of a block's thickness, beyond which a scene is refused. The step is the
+longest at which a landing on a spring of that frequency, at any place in the step, gives back its speed to within the
+error (`validation.theory.rebound`).
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ ROUNDED_DOWN = 0.95  # of a step that is rounded to so few digits: not beyond it
 RESOLVED, LONGEST = 0.01, 10.0  # w dt between which a step is looked for; beyond, a contact lasts one step
 GRID = 40  # of w dt between them
 EDGE = 1e-3  # relative, of the step that is looked for
-LINEAR = np.array(  # displacements that are linear in place: of the angle, and of the strains ex, ey, gxy
+LINEAR = np.array(  # displacements linear in place: of the angle and the strains ex, ey, gxy
     [[[0.0, -1.0], [1.0, 0.0]], [[1.0, 0.0], [0.0, 0.0]], [[0.0, 0.0], [0.0, 1.0]], [[0.0, 0.5], [0.5, 0.0]]]
 )
 
@@ -57,9 +57,9 @@ class MovingAdvice(PlainAnswer):
     fastest: tuple[str, ...]  # the blocks of the fastest contact, one or two
     frequency: float  # w of that contact [rad/s]
     omega_dt: float  # w dt [1]
-    sinking: float  # W / p of one spring under all that moves [m]
+    sinking: float  # W / p [m]
     sinking_share: float  # of the thickness of the thinnest block [1]
-    landing: float  # v sqrt(m / p) at the velocities of t = 0, the greatest share of a thickness [m]
+    landing: float  # v sqrt(m / p) at t = 0, the greatest share of a thickness [m]
     landing_share: float  # that share [1]
     rebound: tuple[float, float]  # least and greatest, of a landing at any place in a step [1]
     error: float  # of the rebound, that is allowed [1]
@@ -87,16 +87,9 @@ def highest_frequency(block: PlacedBlock, stiffness: float) -> float:
 
 
 def moving_advice(scene: Scene, error: float, keep_springs: bool = False) -> MovingAdvice:
-    """Return what springs and step of moving blocks make of their contacts, and which to take.
+    """Return what springs and step make of the contacts of moving blocks, and which to take.
 
-    Parameters
-    ----------
-    scene
-        Without a sweep.
-    error
-        Of the rebound of a landing, that is allowed [1].
-    keep_springs
-        Whether the springs are those of real joints, and stay.
+    The error is that of the rebound of a landing [1]; springs are kept where they are those of real joints.
 
     Raises
     ------
@@ -149,7 +142,7 @@ def moving_advice(scene: Scene, error: float, keep_springs: bool = False) -> Mov
 def spring_range(plane: PlaneSection) -> tuple[float, float] | None:
     """Return the softest and the stiffest spring of a contact, of shear too [N/m]; None where nothing touches.
 
-    Where a contact is rigid they are those that `dda` takes in its place.
+    Of rigid contact they are those that `dda` takes in its place.
     """
     laws = plane.assembly.all_springs
     normal = [OWN_STIFFNESS if math.isinf(law.stiffness) else law.stiffness for law in laws]

@@ -1,4 +1,4 @@
-"""The exact motion of rigid boxes on a ground, where it is known; every other scene of the plane is refused by name."""
+"""The exact motion of rigid boxes on a ground, where it is known; others are refused by name."""
 
 from __future__ import annotations
 
@@ -86,13 +86,7 @@ class ExactBoxes(Prepared):
 
 
 def motion_of(scene: Scene) -> Motion:
-    """Return the motion of a scene of boxes on a ground.
-
-    Raises
-    ------
-    ValueError
-        None is known: why.
-    """
+    """Return the motion of a scene of boxes on a ground; a ValueError says why none is known."""
     ground = boxes_of(scene)
     for name in scene.run.columns:
         if name not in ground.columns:
@@ -124,7 +118,7 @@ def _unless(is_unknown: bool, why: str) -> None:
 
 
 def _poses(ground: BoxesOnGround, time: Array, force: Any = 0.0, **moved: Array) -> dict[str, Array]:
-    """Return the columns of a box alone: those that are given, the others as they are at t = 0."""
+    """Return the columns of a box alone: those that are given, the others as at t = 0."""
     (box,) = ground.boxes
     columns = {ground.force_columns[0]: force}
     columns |= {f"{box.name}.{part}": moved.get(part, getattr(box, part)) for part in POSE}
@@ -136,7 +130,7 @@ def _flown(ground: BoxesOnGround, box: Box, time: Array) -> Array:
     return np.asarray(box.x + box.velocity[0] * time + ground.pull[0] * time**2 / 2)
 
 
-# ---- at rest --------------------------------------------------------------------------------------------------------
+# ---- at rest ----
 
 
 def _pile(ground: BoxesOnGround) -> Motion:
@@ -178,7 +172,7 @@ def _is_supported(ground: BoxesOnGround, lowest: int) -> bool:
     return low < meets < high
 
 
-# ---- on the plane ---------------------------------------------------------------------------------------------------
+# ---- on the plane ----
 
 
 def _on_plane(ground: BoxesOnGround, box: Box) -> Motion:
@@ -210,7 +204,7 @@ def _check_upright(box: Box, needed_friction: float) -> None:
     _unless(needed_friction >= box.width / box.height, why)
 
 
-# ---- flights --------------------------------------------------------------------------------------------------------
+# ---- flights ----
 
 
 def _check_flat(ground: BoxesOnGround, box: Box) -> None:
@@ -262,7 +256,7 @@ def _flights(
         flights.append((start + lasted, 0.0, rebound if rebound > AT_REST * first_landing else 0.0))
 
 
-# ---- on a spring ----------------------------------------------------------------------------------------------------
+# ---- on a spring ----
 
 
 def _on_spring(ground: BoxesOnGround, box: Box) -> Motion:
@@ -292,7 +286,7 @@ def _on_spring(ground: BoxesOnGround, box: Box) -> Motion:
     return motion
 
 
-# ---- on moving ground -----------------------------------------------------------------------------------------------
+# ---- on moving ground ----
 
 
 def _shaken(ground: BoxesOnGround, box: Box) -> Motion:
@@ -311,11 +305,11 @@ def _shaken(ground: BoxesOnGround, box: Box) -> Motion:
     return motion
 
 
-# ---- about a corner -------------------------------------------------------------------------------------------------
+# ---- about a corner ----
 
 
 def _turns_off(box: Box) -> bool:
-    """Whether the velocity at t = 0 is another one than that of a rotation about a lower corner."""
+    """Whether the velocity at t = 0 is not that of a rotation about a lower corner."""
     across = -box.spin * box.height / 2
     upwards = abs(box.spin) * box.width / 2
     allowed = ROLLS * abs(box.spin) * math.hypot(box.width, box.height)
@@ -353,7 +347,7 @@ def _about_corner(scene: Scene, ground: BoxesOnGround, box: Box) -> Motion:
             atol=ACCURACY,
         )
         psi, rate = solution.y
-        # from the left corner, about which a positive rotation turns; to the right all is mirrored
+        # about the left corner, a positive rotation; to the right all is mirrored
         falling = -radius * (np.cos(psi) * rate**2 + np.sin(psi) * rectangle.rate2 * np.sin(psi))
         force = box.mass * (ground.gravity + falling)
         centre = box.x + sign * (-radius * np.sin(psi) - box.width / 2)
@@ -363,7 +357,7 @@ def _about_corner(scene: Scene, ground: BoxesOnGround, box: Box) -> Motion:
     return motion
 
 
-# ---- tumbling -------------------------------------------------------------------------------------------------------
+# ---- tumbling ----
 
 
 def _tumbling(ground: BoxesOnGround, box: Box) -> Motion:

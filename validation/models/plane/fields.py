@@ -19,14 +19,9 @@ STRAIN = ("ex", "ey", "gxy")
 
 
 def write_fields(path: Path, assembly: Assembly, history: History) -> None:
-    """Write a motion.
+    """Write a motion to ``.xdmf``: at most `FRAMES` steps, their data inline; or to ``.vtu``: the last step.
 
-    Parameters
-    ----------
-    path
-        ``.xdmf``: a time series of at most `FRAMES` steps, its data inline; ``.vtu``: the last step.
-    assembly, history
-        The blocks, and a history that has poses and strains of all of them and the forces of all contacts.
+    The history has poses and strains of all blocks and the forces of all contacts.
     """
     corners = [block.vertices for block in assembly.blocks]
     firsts = np.cumsum([0, *map(len, corners)]).tolist()

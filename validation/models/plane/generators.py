@@ -111,7 +111,7 @@ class ArchSection(GeneratorSection):
         """Yield the voussoirs from the left, and the abutments ``left`` and ``right``, as long as the arch is thick."""
         inner, outer = self.radius - self.thickness / 2, self.radius + self.thickness / 2
         half = math.radians(self.opening) / 2
-        # Joint j stands at this angle from the vertical, clockwise; a joint is computed once, so that neighbours share
+        # Joint j stands at this angle from the vertical, clockwise; it is computed once, so that neighbours share
         # their corners to the last digit.
         count = self.voussoirs * self.chords
         angles = [half * (2 * j / count - 1) for j in range(count + 1)]
@@ -215,7 +215,7 @@ class RandomSection(GeneratorSection):
         return self
 
     def outlines(self) -> Outlines:
-        """Yield the blocks; corners keep a share of a full turn over their number apart, so that none is a splinter."""
+        """Yield the blocks; corners keep a share of a full turn over their number apart: none is a splinter."""
         random: Any = np.random.Generator(np.random.PCG64(self.seed))
         cell = 2 * self.radii[1]
         least, most = self.corners

@@ -1,4 +1,4 @@
-"""How outlines lie to each other: which are near, which overlap, and the parts of edges that two of them share."""
+"""How outlines lie to each other: which are near, which overlap, and which parts of edges they share."""
 
 from __future__ import annotations
 
@@ -72,14 +72,14 @@ def _middles(one: Vertices, other: Vertices) -> Iterator[Array]:
             share = (apart[:, 0] * along[:, 1] - apart[:, 1] * along[:, 0]) / crosses
             share_of_other = (apart[:, 0] * edge[1] - apart[:, 1] * edge[0]) / crosses
         meets = (crosses != 0) & (share > 0) & (share < 1) & (share_of_other >= 0) & (share_of_other <= 1)
-        # Corners of the other outline that lie along this edge cut it too: of an edge of the other on the same line.
+        # Corners of the other outline along this edge cut it too: of an edge on the same line.
         on_edge = apart @ edge / (edge @ edge)
         cuts = np.sort(np.concatenate([[0.0, 1.0], share[meets], on_edge[(on_edge > 0) & (on_edge < 1)]]))
         for low, high in itertools.pairwise(cuts):
             yield start + (low + high) / 2 * edge
 
 
-@functools.lru_cache(maxsize=128)  # of a block with many neighbours it is asked for each of them
+@functools.lru_cache(maxsize=128)  # asked for each neighbour of a block
 def inner_point(outline: Vertices) -> Array:
     """Return a point inside an outline [m]: the centre of its largest triangle."""
     triangles = np.array(outline)[np.array(triangles_of(outline))]
@@ -128,7 +128,7 @@ def shared_edges(first: Vertices, second: Vertices, tolerance: float) -> Iterato
 
 
 def corner_on_edge(corner: tuple[float, float], outline: Vertices, edge: int) -> tuple[float, float]:
-    """Return where along an edge the foot of a corner is, as a share of it, and how far outside the corner is [m]."""
+    """Return where the foot of a corner is, as a share of an edge, and how far outside the corner is [m]."""
     start = complex(*outline[edge])
     along = complex(*outline[(edge + 1) % len(outline)]) - start
     apart = (complex(*corner) - start) * along.conjugate()
@@ -148,7 +148,7 @@ def triangles_of(outline: Vertices) -> list[tuple[int, int, int]]:
 
 
 def _is_ear(points: Array, left: list[int], place: int) -> bool:
-    """Whether a corner among those that are left sticks out with no other one in the triangle of its neighbours."""
+    """Whether a corner among those left sticks out with no other in the triangle of its neighbours."""
     corners = left[place - 1], left[place], left[(place + 1) % len(left)]
     a, b, c = points[list(corners)]
     if _twice_area(a, b, c) <= 0:

@@ -1,4 +1,4 @@
-"""What goes with glued blocks: clamps, what is observed, and bodies of triangles that one table draws.
+"""What goes with glued blocks: clamps, observations, and bodies of triangles that one table draws.
 
 A plate with a hole or a disc is drawn as a quarter and mirrored, so that opposite points move alike.
 """
@@ -118,7 +118,7 @@ class PlateSection(BodySection):
         return self.width or diameter, self.height or diameter
 
     def grid(self) -> list[list[Point]]:
-        """Return the nodes: radii in geometric progression from the hole to the outline, the rectangle's corner one."""
+        """Return the nodes: radii in geometric progression from hole to outline, the rectangle's corner one."""
         n = self.cells
         angles = [math.pi / 2 * j / n for j in range(n + 1)]
         outer = [self.sides[0] / 2] * (n + 1)
@@ -215,7 +215,7 @@ def _widening(x: float, stress: Point) -> ObserveSection:
 
 
 def _layer(radii: Sequence[float], angles: Sequence[float]) -> list[Point]:
-    """Return points from axis to axis, on which the first and the last lie to the last digit: so mirrors meet."""
+    """Return points from axis to axis; first and last lie on these to the last digit, so that mirrors meet."""
     points = [(float(r * math.cos(angle)), float(r * math.sin(angle))) for r, angle in zip(radii, angles, strict=True)]
     points[0] = (points[0][0], 0.0)
     points[-1] = (0.0, points[-1][1])

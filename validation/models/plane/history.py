@@ -58,7 +58,7 @@ WHOLE = {MOMENTUM: OF_MOMENTUM, ENERGY: OF_ENERGY}
 
 
 class ColumnPlace(NamedTuple):
-    """What a column is of: a block, a contact (block, corner, other block, edge), a pair of blocks, or all blocks."""
+    """What a column is of: a block, a contact (block, corner, other block, edge), a pair, or all blocks."""
 
     part: str  # "x", "normal", "kinetic"
     meaning: tuple[str, str]  # unit, and what it is
@@ -69,13 +69,7 @@ class ColumnPlace(NamedTuple):
 
 
 def place_of(column: str) -> ColumnPlace:
-    """Return what a column is of by its name.
-
-    Raises
-    ------
-    KeyError
-        If no column is called so.
-    """
+    """Return what a column is of by its name; a KeyError if no column is called so."""
     if match := _OF_CONTACT.fullmatch(column):
         block, corner, on, edge, part = match.groups()
         return ColumnPlace(part, OF_CONTACT[part], contact=(block, int(corner), on, int(edge)))
@@ -89,7 +83,7 @@ def place_of(column: str) -> ColumnPlace:
 
 
 class PlaneColumns(Mapping[str, ColumnKind]):
-    """What every column of moving blocks holds, by its name; so many that they are not listed."""
+    """What every column of moving blocks holds, by name; too many to be listed."""
 
     def __getitem__(self, column: str) -> ColumnKind:
         place = place_of(column)

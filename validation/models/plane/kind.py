@@ -36,7 +36,7 @@ class BlocksInThePlane(Kind):
         return plane.moves and _is_column(column, plane.assembly)
 
     def check(self, scene: Any) -> None:
-        """Check the columns of moving blocks, and that no others have contacts on patches."""
+        """Check the columns of moving blocks, and that only these have contacts on patches."""
         plane: PlaneSection = scene.plane
         if plane.is_glued and scene.fem.foundation != "distributed":
             raise ValueError(f"fem: foundation goes with blocks that move, got {scene.fem.foundation!r} of glued ones")

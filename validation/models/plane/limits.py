@@ -61,7 +61,7 @@ def contact_points(outlines: Sequence[Outline]) -> Iterator[ContactPoint]:
 
 
 class Balance(NamedTuple):
-    """The equations of blocks at rest: forces at contact points, each along its normal and along its edge."""
+    """The equations of blocks at rest: forces at contact points, along normal and edge."""
 
     forces: Array  # of every unit force on the blocks that move, rows x, y and moment of each
     weights: Array  # what they bear, over the greatest of these
@@ -108,14 +108,8 @@ def can_rest(
 ) -> bool:
     """Return whether forces at contacts of friction mu balance the weights of blocks of one density.
 
-    Parameters
-    ----------
-    outlines, held
-        Corners of every block [m], and whether it is fixed.
-    mu
-        tan(phi) of all contacts, None where nothing can slide.
-    gravity
-        In which direction the weights act.
+    Blocks are stated by their corners [m] and by which are held; mu is tan(phi) of all contacts, None where nothing can
+    slide, gravity a direction.
     """
     return balance_of(outlines, held, gravity).is_possible(mu)
 
@@ -148,9 +142,9 @@ def least_thickness(radius: float, voussoirs: int, chords: int = 1) -> float:
 
 @functools.cache
 def flat_height(count: int, width: float, dip: float, mu: float) -> tuple[float, float]:
-    """Return the height of the highest of columns y_n = H n/N on a flat base: by the recursion, and the greatest [m].
+    """Return the height H of columns y_n = H n/N on a flat base: by the recursion, and the greatest [m].
 
-    Above the greatest no contact forces balance the weights. In between it is the history that decides.
+    Above the greatest no contact forces balance the weights; between them the history decides.
     """
 
     def heights(H: float) -> tuple[float, ...]:
@@ -169,7 +163,7 @@ def flat_height(count: int, width: float, dip: float, mu: float) -> tuple[float,
 def stepped_friction(heights: tuple[float, ...], width: float, rise: float, dip: float) -> tuple[float, float]:
     """Return tan(phi) that columns on a stepped base need: by the recursion, and the least.
 
-    Below the least no contact forces balance the weights. In between it is the history that decides.
+    Between them the history decides, as of `flat_height`.
     """
     columns = ColumnsSection(name="column", width=width, heights=heights, dip=math.degrees(dip), rise=rise)
     balance = balance_of(*drawn(columns))
@@ -181,8 +175,8 @@ def stepped_friction(heights: tuple[float, ...], width: float, rise: float, dip:
 def keyed_dip(height: float, count: int, width: float) -> float:
     """Return the dip at which columns topple that are keyed to a base and smooth between them [rad].
 
-    Heights rise evenly from the toe, y_n = H n/N. Smooth sides pass moments on, the columns turn together, and stand
-    while the sum of W_n (y_n sin a - dx cos a) is negative: tan a = 3 N dx/((2 N + 1) H).
+    Heights are y_n = H n/N. Smooth sides pass moments on, the columns turn together, and stand while the sum of
+    W_n (y_n sin a - dx cos a) is negative: tan a = 3 N dx/((2 N + 1) H).
     """
     return math.atan(3 * count * width / ((2 * count + 1) * height))
 
@@ -216,15 +210,8 @@ def recursion(heights: Sequence[float], width: float, rise: float, dip: float, m
 
     Goodman and Bray (1976): from the highest column down, P of the next one is what toppling or sliding leaves,
     with the forces between columns at the tops of the contacts and their friction at its limit. Zero: it stands.
-
-    Parameters
-    ----------
-    heights
-        Of the columns from the toe on [m].
-    width, rise
-        Of a column along the dip, and of the base from a column to the next [m].
-    dip, mu
-        Of the treads [rad], and tan(phi).
+    Heights [m] count from the toe on, the width [m] is along the dip of the treads [rad], the rise [m] is that of the
+    base from a column to the next, mu is tan(phi).
     """
     push = 0.0
     sine = math.sin(dip)

@@ -11,7 +11,7 @@ from validation.models.plane.boxes import Box, BoxesOnGround
 from validation.runs.history import Array, History
 
 Rows = NDArray[np.bool_]
-SAME_FALL = 0.05  # of g h^2: what the second difference of a free flight may be off, air damping of programs included
+SAME_FALL = 0.05  # of g h^2: error of the second difference of a free flight, air damping of programs included
 LATE = 1.0  # s at the end of a run, over which its last energy is taken; longer than the flight from 1 m
 
 
@@ -23,10 +23,9 @@ def column(history: History, box: Box, part: str) -> Array:
 def in_flight(history: History, ground: BoxesOnGround) -> Rows:
     """Return at which rows a box flies freely, both its neighbours being of the same flight; never at the ends.
 
-    In free flight y is a parabola, x and the angle are straight, at the rows of an exact motion and at those of every
-    usual time step alike: the second differences over rows h apart are -g h^2 and zero. An impact between two rows
-    changes the second differences at both by v h together, so that one of them may look free: a row counts where its
-    own second differences and those at its two neighbours are of a flight.
+    In free flight y is a parabola, x and the angle are straight: whatever the time step, the second differences over
+    rows h apart are -g h^2 and zero. An impact between two rows changes the second differences at both by v h together,
+    so that one of them may look free: a row counts where its own and those at its two neighbours are of a flight.
     """
     box = ground.boxes[0]
     interval = float(history.time[1] - history.time[0])
@@ -44,8 +43,8 @@ def in_flight(history: History, ground: BoxesOnGround) -> Rows:
 def energies(history: History, ground: BoxesOnGround) -> Array:
     """Return the energy of a box at the rows over its mass [m2/s2], its potential energy being none where it lies flat.
 
-    g (y - y_flat) + |v|^2 / 2 + (I / m) w^2 / 2 with central differences over the rows, NaN at the ends. On a parabola
-    these are its slopes exactly: the value is the same at all rows of a free flight, whatever its step.
+    g (y - y_flat) + |v|^2 / 2 + (I / m) w^2 / 2 with central differences over the rows, NaN at the ends: on a parabola
+    these are its slopes exactly.
     """
     box = ground.boxes[0]
     interval = float(history.time[1] - history.time[0])
@@ -119,7 +118,7 @@ def peak(values: Array) -> float:
 
 
 def contact_time(history: History, gap: Array) -> float | None:
-    """Return how long a gap is closed for the first time [s], the gap being a straight line between rows.
+    """Return how long a gap, linear between rows, is closed for the first time [s].
 
     None where it does not close and open again.
     """

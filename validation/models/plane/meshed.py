@@ -25,7 +25,7 @@ from validation.solvers.translation import naming, to_run
 if TYPE_CHECKING:
     from fem_reference import BodiesResult, PatchContact, PlaneBody, PlaneModel, Scheme
 
-FACING = 1e-6  # sine of the angle between a face and the edge in front of it, below which a strip lies on both
+FACING = 1e-6  # sine of the angle of face and edge, below which a strip lies on both
 TOUCHING = 1e-12  # gap over the thinnest block that rounding leaves of a corner on an edge
 OF_BODIES = ("density", "young", "poisson", "hypothesis", "velocity", "spin")
 RATES = {"vx": "x", "vy": "y", "spin": "angle"}
@@ -106,7 +106,6 @@ class MovingMesh(Prepared):
         )
 
     def _column(self, result: BodiesResult, column: str) -> Array:
-        """Return a column of a result by its name."""
         place = place_of(column)
         names = [block.name for block in self.assembly.blocks]
         if place.whole == ENERGY:
@@ -181,7 +180,7 @@ def _contact(assembly: Assembly, moving: list[int], contact: StatedContact, widt
 
 
 def _glue(assembly: Assembly, moving: list[int], width: float) -> list[PatchContact]:
-    """Return the springs at both ends of what blocks are glued along, over parts as wide as a patch."""
+    """Return the springs at both ends of glued edges, over parts as wide as a patch."""
     from fem_reference import PatchContact
 
     contacts = []

@@ -1,4 +1,4 @@
-"""A motion of blocks, as a history tells it: outlines and contact forces at its steps, for drawings and fields."""
+"""Outlines and contact forces of blocks at the steps of a history, for drawings and fields."""
 
 from __future__ import annotations
 
@@ -45,8 +45,7 @@ def contacts_of(history: History) -> list[Contact]:
 def force_on_corner(contact: Contact, outlines: Mapping[str, Array], history: History, step: int) -> Array:
     """Return the force of a contact on the block whose corner it is [N].
 
-    The normal force acts along the outward normal of the edge, the shear force against the edge, which runs
-    counter-clockwise.
+    The normal force acts along the edge's outward normal, the shear force against the edge (counter-clockwise).
     """
     block, corner, on, edge = contact
     outline = outlines[on]

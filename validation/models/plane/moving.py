@@ -124,7 +124,7 @@ class MovingBlocks(Prepared):
 
     @property
     def rows(self) -> slice:
-        """The steps of a result that are rows of a history: the last one of each, without that of t = 0."""
+        """The steps of a result that are rows of a history: the last of each, without t = 0."""
         return slice(self.steps_per_row, None, self.steps_per_row)
 
     def _column(self, result: dda.PlaneResult, names: list[str], column: str) -> Array:

@@ -24,7 +24,7 @@ class HOOKS(PageHooks):
     """The blocks of a rectangle, or the contacts of blocks that move."""
 
     def page(self, scene: Scene, question: Question) -> Page:
-        """Return the static error of glued blocks and how to cut them, or what springs and step make of contacts."""
+        """Return the page of glued blocks, or of contacts of moving ones."""
         if scene.table(PlaneSection).is_glued:
             return page_of_cut(scene, question, *recommended_cut(scene, question.error))
         advice = moving_advice(scene, question.error, question.keep_springs)
@@ -34,10 +34,7 @@ class HOOKS(PageHooks):
 def recommended_cut(scene: Scene, error: float) -> tuple[str, Recommendation]:
     """Return the static error of the present blocks of a beam, and into how many to cut it.
 
-    Raises
-    ------
-    InputError
-        The blocks are stated one by one.
+    Blocks that are stated one by one are an `InputError`.
     """
     plane = scene.table(PlaneSection)
     if plane.subdivide is None or plane.width is None or plane.height is None:

@@ -33,10 +33,7 @@ class HOOKS(PlainHooks):
     def data(self, scene: Scene) -> dict[str, Any]:
         """Return blocks, contacts and gravity; null where there is no law, no pair with its own, no stated contact.
 
-        Raises
-        ------
-        InputError
-            The scene has more than that.
+        A scene with more than that is an `InputError`.
         """
         plane = scene.table(PlaneSection)
         if more := [name for name in (*BODIES, "observe", "bond", "load", "ramp") if getattr(plane, name)]:

@@ -43,7 +43,7 @@ def decided(name: str, is_so: bool, reason: str, measure: Callable[[History], bo
 def varied(
     name: str, unit: str, value: Callable[[float], float], datum: str, measure: Measure, **others: Any
 ) -> JudgedNumber:
-    """Return a number whose band is what a factor of one per cent on a datum makes of its value."""
+    """Return a number whose band is what one per cent of a datum makes of its value."""
     exact, *changed = (value(factor) for factor in (1.0, *EITHER_WAY))
     return around(
         name, unit, exact, changed, f"one per cent of {datum} changes it by as much", measure=measure, **others
@@ -54,8 +54,8 @@ class PlaneCase(NamedTuple):
     """A case of a problem."""
 
     label: str  # the values that it differs by from the problem's own scene, in words; empty for that one
-    values: Mapping[str, Any] = {}  # the same as keys of a scene
-    quantities: Numbers | None = None  # where they answer another question than those of the problem's own scene
+    values: Mapping[str, Any] = {}  # as keys of a scene
+    quantities: Numbers | None = None  # where they are others than those of the problem's own scene
 
 
 class PlaneProblem(NamedTuple):
@@ -86,14 +86,9 @@ def own_scene(name: str) -> Scene:
 def problems_of(
     group: str, numbers: Mapping[str, Numbers], more: Mapping[str, Iterable[PlaneCase]]
 ) -> dict[str, PlaneProblem]:
-    """Return the problems of a group of `problems.toml` by name.
+    """Return the problems of a group of `problems.toml` by name, with more cases than the table's.
 
-    Parameters
-    ----------
-    numbers
-        The functions by name that say what is measured.
-    more
-        Cases of problems beside those of the table.
+    `numbers` are the functions that say what is measured.
     """
     problems = {}
     for name, stated in TABLE[group].items():

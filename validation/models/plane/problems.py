@@ -1,8 +1,8 @@
 """The problems of boxes on a ground: what is measured on an answer, its exact value, and the band around it.
 
-An answer is positions. Its numbers are held against closed forms (`validation.theory.boxes`), and the bands are what
-one per cent of a datum changes: data of a body and its contact are not known to better than that, an error below it
-changes nothing for who uses the answer.
+An answer is positions, held against closed forms (`validation.theory.boxes`). The bands are what one per cent of a
+datum changes: data of a body and its contact are not known to better than that, and an error below it changes nothing
+for who uses the answer.
 """
 
 from __future__ import annotations
@@ -47,17 +47,17 @@ from validation.theory.boxes import (
 )
 from validation.theory.rocking import Rectangle
 
-FIRST_ROW = 0.3  # relative, of the height of a box: what it may have changed by at the first row
+FIRST_ROW = 0.3  # of the height of a box: what it may have changed by at the first row
 BOX = "plane.block.1"  # the first box of a scene, after its ground
 MINUTE = 60.0  # s
 SETTLED = 0.5  # s after a landing: what moves away then has rebounded
 
 
-# ---- standing -------------------------------------------------------------------------------------------------------
+# ---- standing ----
 
 
 def standing(scene: Scene) -> tuple[JudgedNumber, ...]:
-    """Return the creep of a box that stands on a slope, or how far one slides that does not."""
+    """Return the creep of a box that stands on a slope, or how far another one slides."""
     ground = boxes_of(scene)
     box = ground.boxes[0]
     if ground.friction > ground.slope:
@@ -76,7 +76,7 @@ def standing(scene: Scene) -> tuple[JudgedNumber, ...]:
     return (varied(slid, "m", distance, FRICTION, lambda h: float(measures.column(h, box, "x")[-1] - box.x)),)
 
 
-# ---- bounces --------------------------------------------------------------------------------------------------------
+# ---- bounces ----
 
 
 def restitution(scene: Scene) -> tuple[JudgedNumber, ...]:
@@ -100,7 +100,7 @@ def restitution(scene: Scene) -> tuple[JudgedNumber, ...]:
 
 
 RESTITUTIONS = (0.0, 0.5, 1.0)
-SPEEDS = (0.1, 1.0, 5.0)  # m/s; programs leave restitution away below a threshold, most often from 0.2 to 1 m/s
+SPEEDS = (0.1, 1.0, 5.0)  # m/s; programs have no restitution below a threshold, mostly 0.2 to 1 m/s
 LANDING = 0.2625  # s after t = 0: in the middle of a row and of the steps of the curves' first runs
 
 
@@ -146,7 +146,7 @@ def tumbling(scene: Scene) -> tuple[JudgedNumber, ...]:
     return (*bouncing(scene), at_most("change of the speed along the ground", "m/s", landing, reason, change))
 
 
-# ---- piles ----------------------------------------------------------------------------------------------------------
+# ---- piles ----
 
 
 def pile(scene: Scene) -> tuple[JudgedNumber, ...]:
@@ -186,7 +186,7 @@ def pile(scene: Scene) -> tuple[JudgedNumber, ...]:
     )
 
 
-# ---- toppling -------------------------------------------------------------------------------------------------------
+# ---- toppling ----
 
 
 def rectangle_of(ground: BoxesOnGround, factor: float = 1.0) -> Rectangle:
@@ -201,7 +201,7 @@ def _rotation(history: History, ground: BoxesOnGround) -> float:
 
 
 def toppling(scene: Scene) -> tuple[JudgedNumber, ...]:
-    """Return how far a box turns that was started about its corner; of one that may overturn, whether it does."""
+    """Return how far a box turns about its corner; of one that may overturn, whether it does."""
     ground = boxes_of(scene)
     spin = abs(ground.boxes[0].spin)
     if spin >= min(rectangle_of(ground, factor).critical_spin for factor in EITHER_WAY):
@@ -227,7 +227,7 @@ def overturning(scene: Scene) -> tuple[JudgedNumber, ...]:
 
 
 SPINS = (0.95, 0.98, 0.99, 1.01, 1.02, 1.05)  # of the one that just overturns
-DECIDED = 150  # rows: 2.5 s, in which what passes the unstable position has done so
+DECIDED = 150  # rows: 2.5 s, in which the unstable position is passed or not
 
 
 def _toppling_cases() -> Iterator[PlaneCase]:
@@ -239,7 +239,7 @@ def _toppling_cases() -> Iterator[PlaneCase]:
         yield PlaneCase(f"spin {factor:g} of critical", started, overturning)
 
 
-# ---- shaken ---------------------------------------------------------------------------------------------------------
+# ---- shaken ----
 
 
 def shaken_box(scene: Scene, factor: float = 1.0) -> ShakenBox:
@@ -273,16 +273,13 @@ def shaken(scene: Scene) -> tuple[JudgedNumber, ...]:
     )
 
 
-# ---- impact on a spring ---------------------------------------------------------------------------------------------
+# ---- impact on a spring ----
 
 
 def impact_of(scene: Scene, stiffness: float = 1.0, mass: float = 1.0) -> SpringImpact:
     """Return the landing of the first box of a scene on its spring, stiffness and mass multiplied by factors.
 
-    Raises
-    ------
-    InputError
-        The scene gives no stiffness.
+    A scene without a stiffness is an `InputError`.
     """
     ground = boxes_of(scene)
     box = ground.boxes[0]
@@ -362,7 +359,7 @@ def problem_posed(scene: Scene) -> PlaneProblem:
     Raises
     ------
     InputError
-        It is none of them; what is measured on any other scene of blocks, and against what, nobody has said.
+        It is none of them: nobody has said what is measured on any other scene of blocks.
     """
     problems = {**box_problems(), **canon_problems()}
     name = scene.name.removeprefix(PREFIX).partition("[")[0]

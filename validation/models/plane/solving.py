@@ -11,8 +11,8 @@ from validation.solvers.contract import Prepared, Solver
 from validation.solvers.hooks import SolvingHooks
 from validation.solvers.memory import NUMBER, sparse
 
-# s of a case of which a study has dozens, and s more for each second of motion and block: the slowest program takes
-# some 0.5 s for it on a core of its own
+# s of a case of which a study has dozens, and s more for each second of motion and block, for which the slowest program
+# takes some 0.5 s on a core of its own
 TIME_LIMIT = 60.0
 TIME_FACTOR = 3.0
 STATE = 18  # numbers of a moving block at a step: pose, strain and velocity, and as many of its contacts

@@ -1,8 +1,4 @@
-"""The table of blocks in the plane, `[plane]`: what they are, what joins them and what drives them.
-
-With `[plane.observe]` the blocks are glued along all edges that they share and displacements are small; without it they
-move, turn and touch each other.
-"""
+"""The table of blocks in the plane, `[plane]`: glued ones in small displacements, or blocks that move and touch."""
 
 from __future__ import annotations
 

@@ -1,4 +1,1 @@
-"""The last pages: words, gates, alarms, parameters and where the numbers come from.
-
-What a reader looks up and does not read; rows and verdicts come in.
-"""
+"""The last pages, to look things up: words, gates, alarms, parameters and where the numbers come from."""

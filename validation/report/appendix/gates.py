@@ -13,7 +13,7 @@ MOST_NAMES = 2  # of scenes and of metrics that share a reason; the others are c
 
 
 def gate_table(verdicts: Verdicts) -> Blocks:
-    """Return how many gates passed for each reason, on what, study by study; nothing where none passed."""
+    """Return how many gates passed for each reason, on what, by study; nothing where none passed."""
     passed_by_study: dict[str, dict[str, list[VerdictRecord]]] = {}
     for v in verdicts:
         if v["verdict"] == "PASS":

@@ -17,7 +17,7 @@ MOST_NAMES = 2  # of scenes with the same data, before how many more there are
 
 
 def parameter_table(groups: Groups) -> Blocks:
-    """Return the data of the scenes: the first in full, of the others what differs, a line for equal ones."""
+    """Return the data of the scenes: the first in full, of the others what differs, equal ones in a line."""
     groups_by_data: dict[str, list[CaseGroup]] = {}
     first_items: set[str] = set()
     for group in groups.values():
@@ -36,7 +36,7 @@ def parameter_table(groups: Groups) -> Blocks:
 
 
 def provenance(results: Results, studies: Sequence[str]) -> Blocks:
-    """Return where the numbers come from and what they cost; what all studies share is said once."""
+    """Return where the numbers come from and what they cost; what studies share is said once."""
     manifests = [results.manifest(study) for study in studies]
     studies_by_item: dict[tuple[str, str], list[str]] = {}
     for manifest in manifests:
@@ -59,7 +59,7 @@ def _item_text(value: object) -> str:
 
 
 def cost_table(results: Results, manifests: Sequence[Manifest]) -> Table:
-    """Return runs, work and seconds of each solver over all studies; a run that studies share counts once."""
+    """Return runs, work and seconds of each solver in all studies; a run that they share counts once."""
     rows = results.rows()
     rows_by_solver: dict[str, dict[str, Row]] = {}
     for manifest in manifests:

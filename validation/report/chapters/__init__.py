@@ -1,4 +1,1 @@
-"""Chapters: functions of results that return blocks.
-
-Nothing is computed that a study could have kept.
-"""
+"""Chapters: functions of results that return blocks; what a study could have kept is not computed here."""

@@ -14,7 +14,7 @@ MOST_NAMES = 6  # of scenes in a line
 
 
 def alarm_lines(groups: Groups) -> list[Callout]:
-    """Return each kind of alarm with the number of its cases, scenes if several, and the sentence of the first."""
+    """Return each kind of alarm with the number of its cases, scenes if several, and the first sentence."""
     raised: dict[str, list[AlarmRecord]] = {}
     for alarm in chain.from_iterable(group.alarms for group in groups.values()):
         raised.setdefault(alarm["kind"], []).append(alarm)

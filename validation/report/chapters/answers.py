@@ -48,7 +48,7 @@ class AnswerCell:
 
 
 def cells(judged: JudgedSet) -> list[AnswerCell]:
-    """Return what a table holds of a program: each problem of the pack, then those that are in it no more."""
+    """Return the cells of a program: each problem of the pack, then those that are in it no more."""
     by_name = {answer.name: answer for answer in judged.answers.answers}
     rows = []
     for name in dict.fromkeys([*names(), *by_name]):
@@ -95,17 +95,17 @@ def summary(sets: Sequence[JudgedSet]) -> Counter[Status]:
 
 
 def headline(judged: JudgedSet) -> str:
-    """Return how many of its answers pass, in a few words."""
+    """Return how many of its answers pass."""
     counts = summary([judged])
     other_counts = [f"{count} {status}" for status, count in sorted(counts.items()) if status is not Status.PASS]
     return ", ".join([f"{counts[Status.PASS]} of {counts.total()} PASS", *other_counts])
 
 
-# ---- plain data -----------------------------------------------------------------------------------------------------
+# ---- plain data ----
 
 
 def verdicts(sets: Sequence[JudgedSet]) -> dict[str, Any]:
-    """Return the verdicts on all answers as plain data."""
+    """Return all verdicts as plain data."""
     return {
         "format": FORMAT,
         "pack": PACK,
@@ -133,11 +133,11 @@ def _rows(judged: JudgedSet) -> list[dict[str, Any]]:
     return rows
 
 
-# ---- tables ---------------------------------------------------------------------------------------------------------
+# ---- tables ----
 
 
 def first_page(sets: Sequence[JudgedSet]) -> Blocks:
-    """Return a report of some programs on one page or two: problems against programs, reasons, who they are."""
+    """Return a report of programs: problems against programs, reasons, who they are."""
     title = f"Answers to the problems of pack {PACK}"
     return [Heading(title), Paragraph(LEAD), answer_table(sets), *reason_blocks(sets), stated_table(with_answers(sets))]
 
@@ -149,7 +149,7 @@ def with_answers(sets: Sequence[JudgedSet]) -> list[JudgedSet]:
 
 
 def answer_table(of_all: Sequence[JudgedSet]) -> Table:
-    """Return programs against problems: the verdict, the error that decides and what is allowed, and what runs took.
+    """Return programs against problems: verdict, the error that decides, what is allowed, and what runs took.
 
     A program that answered nothing is named below the table, with what it said of the first problem.
     """
@@ -175,13 +175,13 @@ def answer_table(of_all: Sequence[JudgedSet]) -> Table:
 
 
 def _seconds(judged: JudgedSet) -> str:
-    """Return what the answers of a program took together [s], to two digits."""
+    """Return what the answers of a program took [s], to two digits."""
     times = [answer.seconds for answer in judged.answers.answers if answer.seconds is not None and answer.history]
     return short(sum(times), 2) if times else DASH
 
 
 def reason_blocks(sets: Sequence[JudgedSet]) -> Blocks:
-    """Return why answers fail or are not judged, those of one program with one reason in a line."""
+    """Return why answers fail or are not judged, a line for each program and reason."""
     rows = []
     for judged in with_answers(sets):
         problems_by_reason: dict[tuple[str, str], list[str]] = {}
@@ -196,7 +196,7 @@ def reason_blocks(sets: Sequence[JudgedSet]) -> Blocks:
 
 
 def stated_table(sets: Sequence[JudgedSet]) -> Table:
-    """Return what folders of answers say of themselves, a column each; a row that none of them states is left out."""
+    """Return what programs say of themselves, a column each, without rows that none states."""
     rows = []
     for field, title in STATED.items():
         texts = [_stated(judged, field) for judged in sets]
@@ -206,7 +206,7 @@ def stated_table(sets: Sequence[JudgedSet]) -> Table:
 
 
 def asks_of(sets: Sequence[JudgedSet]) -> dict[str, str]:
-    """Return the problems that some program was asked, and what they ask."""
+    """Return the problems that programs were asked, and what they ask."""
     asked = {cell.problem for judged in sets for cell in answered(judged)}
     own = {answer.name: answer.problem for judged in sets for answer in judged.answers.answers}
     asks = {}
@@ -218,7 +218,6 @@ def asks_of(sets: Sequence[JudgedSet]) -> dict[str, str]:
 
 
 def _stated(judged: JudgedSet, field: str) -> str:
-    """Return what a program says of itself, in words."""
     value = getattr(judged.answers.data, field)
     if not value:
         return "none" if field == "step_s" and judged.answers.data.who else DASH

@@ -28,7 +28,7 @@ DASHES = {"algorithmic": (4.0, 2.0), "kinetic": (1.0, 1.5), "viscous": (6.0, 1.5
 
 
 def budget_blocks(group: CaseGroup, directory: Path) -> Blocks:
-    """Return the damping budget of a scene, a figure for each four settings; nothing where its results hold none."""
+    """Return the damping budget of a scene, a figure for each four settings; nothing where there is none."""
     scenes = {case.name: case.scene for case in group.cases}
     panels = []
     for budget in group.budgets:
@@ -44,7 +44,7 @@ def budget_blocks(group: CaseGroup, directory: Path) -> Blocks:
 
 
 def budget_panel(title: str, budget: BudgetRecord) -> ChartPanel:
-    """Return total damping ratio and its parts over dt, with the limits; dots at the bottom are the cases."""
+    """Return total damping ratio and its parts over dt, with limits; dots at the bottom are cases."""
     dt = np.array(budget["dt"])
     lines = []
     for line in budget_lines(budget):
@@ -70,7 +70,7 @@ def budget_panel(title: str, budget: BudgetRecord) -> ChartPanel:
 
 
 def budget_lines(budget: BudgetRecord) -> list[ChartLine]:
-    """Return the damping ratios [%] of both modes, parts of the first only where it has more than one."""
+    """Return the damping ratios [%] of both modes; parts of the first where it has several."""
     colors = {FIRST: style_of("dda").color, "contact": CONTACT_COLOR}
     lines = []
     for name, curves in budget["modes"].items():

@@ -33,7 +33,7 @@ def write_page(scene: Scene, source: str, answer: Answer, out: Path) -> Path:
 
 
 def answer_figure(scene: Scene, answer: Answer, slide: bool = False) -> Figure:
-    """Draw the file, DDA on the scene and the best explanation; below, what they leave of the file's displacement."""
+    """Draw the file, DDA and the best explanation; below, what these leave of the file's displacement."""
     histories_by_name = {}
     for name, (time, values) in answer.curves.items():
         pressure = {PRESSURE: answer.pressures[name]} if name in answer.pressures else {}

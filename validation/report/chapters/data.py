@@ -99,7 +99,7 @@ CaseGroups = Sequence[CaseGroup]
 
 
 def case_groups(results: Results, manifest: Manifest, drawn: bool = True) -> list[CaseGroup]:
-    """Return the scenes of a study in the order of its manifest; with their histories only if those are drawn."""
+    """Return the scenes of a study in the order of its manifest, with histories only if those are drawn."""
     rows = results.rows()
     scenes: dict[str, dict[str, list[CaseRecord]]] = {}
     for entry in manifest.get("cases", []):
@@ -122,7 +122,7 @@ def case_groups(results: Results, manifest: Manifest, drawn: bool = True) -> lis
 
 
 def groups_of_studies(results: Results, manifests: Iterable[Manifest], drawn: bool = True) -> dict[str, CaseGroup]:
-    """Return the scenes of studies by their names, each as the first study has it."""
+    """Return the scenes of studies by name, each as the first study has it."""
     groups: dict[str, CaseGroup] = {}
     for manifest in manifests:
         for group in case_groups(results, manifest, drawn):
@@ -131,7 +131,7 @@ def groups_of_studies(results: Results, manifests: Iterable[Manifest], drawn: bo
 
 
 def labels_of(groups: Iterable[CaseGroup]) -> dict[str, str]:
-    """Return the labels of all cases, by their names."""
+    """Return the labels of cases by name."""
     return {case.name: case.label for group in groups for case in group.cases}
 
 
@@ -140,7 +140,7 @@ def cases_with(
     rows: RowsBySolver,
     history_of: Callable[[str], History | None] = lambda key: None,
 ) -> tuple[CaseResults, ...]:
-    """Return the cases of one scene with their labels, the rows of their records, and the histories of these by key."""
+    """Return the cases of one scene with labels, the rows of their records, and histories by key."""
     scenes = [parse_scene(records[0]["definition"], name) for name, records in records_by_case.items()]
     labels = case_labels(list(records_by_case), scenes)
     cases = []
@@ -156,5 +156,5 @@ def cases_with(
 
 
 def varied_fields(group: CaseGroup) -> set[str]:
-    """Return the fields that vary between the cases of a scene."""
+    """Return the fields that vary between cases."""
     return set().union(*(CaseName.parse(case.name).values for case in group.cases))

@@ -32,7 +32,7 @@ from validation.runs.texts import FILLED, Texts
 
 @dataclass(frozen=True)
 class CaseColumn:
-    """A column of a table: a number in the unit that its title names."""
+    """A table column: a number in the unit that its title names."""
 
     title: str
     of: str = ""
@@ -45,13 +45,13 @@ class CaseColumn:
 
     @property
     def head(self) -> Head:
-        """Its head in the table."""
+        """Its head."""
         if self.kind is not None:
             return TableColumn(self.title, self.kind, self.group)
         return (self.group, self.title) if self.group else self.title
 
     def text(self, value: Value) -> str:
-        """Return a value as a cell: a number, its word, or a dash where there is none."""
+        """Return a value as a cell: a number, its word, or a dash."""
         if value is None or isinstance(value, str):
             return cell(in_words(self.of.rpartition(" ")[2], value))
         number = value if self.factor == 1 else value * self.factor  # a count stays one: its zero is no rounding
@@ -60,7 +60,7 @@ class CaseColumn:
         return decimal(number, self.decimals)
 
     def of_case(self, case: CaseResults, own: Metrics) -> str:
-        """Return the cell of a case; `own` are values by names that stand in place of an expression."""
+        """Return the cell of a case; `own` are values by name in place of an expression."""
         return self.text(own[self.of] if self.of in own else value_of_case(case, None, self.of))
 
 
@@ -68,11 +68,11 @@ class Description(Texts):
     """The description of a chapter."""
 
     def has(self, kind: str, name: str) -> bool:
-        """Whether something of a kind (``text``, ``number``, ``table``) goes by a name."""
+        """Whether something of a kind (``text``, ``number``, ``table``) has this name."""
         return name in self._data.get(kind, {})
 
     def described(self, kind: str, name: str) -> dict[str, Any]:
-        """Return what the description says of a thing of a kind."""
+        """Return what is said of a thing of a kind."""
         described: dict[str, Any] = self._data[kind][name]
         return described
 
@@ -87,7 +87,7 @@ class Description(Texts):
         return [CaseColumn(column) if isinstance(column, str) else CaseColumn(**column) for column in columns]
 
     def table(self, name: str, rows: Iterable[Sequence[str]], heads: Sequence[Head] = (), **values: Any) -> Table:
-        """Return a table of these rows; `heads` stand in place of the described ones."""
+        """Return a table of these rows; `heads` replace the described ones."""
         described = dict(self._data["table"][name])
         described.pop("columns", None)
         if values:
@@ -95,7 +95,7 @@ class Description(Texts):
         return table(heads or [column.head for column in self.columns(name)], rows, **described)
 
     def panel(self, name: str, lines: Sequence[ChartLine], **parts: Any) -> ChartPanel:
-        """Return a panel with these lines; `parts` stand beside or in place of the described ones."""
+        """Return a panel with these lines; `parts` stand beside or replace the described ones."""
         described = {"title": "", "x_label": "", "y_label": ""} | self._data["panel"][name] | parts
         for query in ("lines", "level_of", "level_factor", "mark_of"):
             described.pop(query, None)
@@ -107,7 +107,7 @@ class Description(Texts):
     def figure(
         self, name: str, panels: Sequence[ChartPanel], directory: Path, scene: str = "", **values: Any
     ) -> FigureBlock:
-        """Draw panels as a figure, of one scene or of none, and return its block."""
+        """Draw panels as a figure, of one scene or of none; return its block."""
         described = self._data["figure"][name]
         margins = histories.Margins(*described["margins"]) if "margins" in described else None
         figure = chart_figure(panels, described.get("height", 48.0), margins, described.get("shared", False))

@@ -17,14 +17,14 @@ NARROW = 7  # digits; a narrower band is written as middle and half width
 
 
 def value_cell(value: Value, metric: str = "") -> str:
-    """Return the value of a verdict on a metric without needless zeros; a count that is none is 0."""
+    """Return a value of a metric without needless zeros; a count that is none is 0."""
     if value == 0 and is_count(metric):
         return "0"
     return bounded(value, short(value)) if isinstance(value, int | float) else cell(in_words(metric, value))
 
 
 def window(v: VerdictRecord) -> str:
-    """Return the time up to which a gate compares, ``0.2s``, which its id ends with; nothing for a whole run."""
+    """Return the time up to which a gate compares, ``0.2s``, the end of its id; nothing for a whole run."""
     return v["id"].rpartition("@")[2] if "@" in v["id"] else ""
 
 
@@ -52,7 +52,7 @@ def reason(v: VerdictRecord) -> str:
 
 
 def verdict_line(verdicts: Verdicts) -> Callout:
-    """Return the one line of verdicts."""
+    """Return the line of verdicts."""
     if not verdicts:
         return Callout("No gate was judged.", "warn")
     count = Counter(v["verdict"] for v in verdicts)

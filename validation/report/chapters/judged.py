@@ -66,7 +66,7 @@ def reached(answer: JudgedAnswer) -> str:
 
 
 def as_data(judged: JudgedAnswer) -> dict[str, Any]:
-    """Return a judgement as plain data, its numbers without the last digits, which differ between processors."""
+    """Return a judgement as plain data, without last digits, which differ between processors."""
     named = judged.problem.named
     criteria = []
     for criterion in judged.judgement.criteria:
@@ -120,7 +120,7 @@ def _cause_data(cause: Cause) -> dict[str, Any]:
 
 
 def verdict_blocks(answer: JudgedAnswer, title: str = "") -> Blocks:
-    """Return the verdict first, where it needs one with its title before it, then what it rests on."""
+    """Return the verdict, with its title where it needs one, then what it rests on."""
     judgement = answer.judgement
     tone = TONES.get(judgement.status, "warn")
     blocks: Blocks = [Callout(title + headline(answer), tone)]  # type: ignore[arg-type]
@@ -176,7 +176,7 @@ def page(answer: JudgedAnswer, directory: Path) -> Blocks:
 
 
 def figures(answer: JudgedAnswer, directory: Path) -> Sequence[FigureBlock]:
-    """Draw every column that is judged, with the exact one; of boxes what moves of the uppermost."""
+    """Draw every judged column with the exact one; of boxes what moves of the uppermost."""
     from validation.report.figures import histories, motion  # which load matplotlib; a verdict alone needs none
 
     drawn = []
@@ -205,7 +205,7 @@ def figures(answer: JudgedAnswer, directory: Path) -> Sequence[FigureBlock]:
 
 
 def _curves(answer: JudgedAnswer) -> list[tuple[str, History | None]]:
-    """Return the columns that are drawn, each with the exact motion beside it where it is judged by that."""
+    """Return the drawn columns, each with the exact motion where it is judged by that."""
     columns = answer.history.columns
     if answer.standard is not None:
         return [(name, answer.standard.exact) for name in columns if name in answer.standard.exact.columns]
@@ -215,7 +215,7 @@ def _curves(answer: JudgedAnswer) -> list[tuple[str, History | None]]:
 
 
 def numbers_table(numbers: Sequence[Quantity]) -> Table:
-    """Return the numbers of an answer beside the exact ones, and the edges between which those that are judged pass."""
+    """Return the numbers of an answer beside the exact ones, and the edges between which judged ones pass."""
     rows = []
     judged = any(number.band is not None for number in numbers)
     for number in numbers:

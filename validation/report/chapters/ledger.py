@@ -46,18 +46,18 @@ MARGINS = Margins(left=50.0, right=4.0)
 
 
 def parts_of(case: CaseResults) -> Mapping[str, tuple[str, str]]:
-    """Return the parts of the ledger, each the solver and its reference."""
+    """Return the parts of the ledger, each with solver and reference."""
     return PARTS if features.linear(case.scene) else OPENING_PARTS
 
 
 def entry(group: CaseGroup, case: CaseResults, part: str) -> Values:
-    """Return a part of the ledger for one case: its own pair's numbers, None where the pair was not compared."""
+    """Return a part of the ledger for one case, None where its pair was not compared."""
     displacement, pressure = (group.number_of_pair(case, *parts_of(case)[part], name) for name in METRICS)
     return displacement, pressure
 
 
 def with_entries(groups: CaseGroups, parts: Mapping[str, tuple[str, str]]) -> list[CaseGroup]:
-    """Return the groups with the cases of these parts that some of them applies to."""
+    """Return the groups with the cases that some of these parts apply to."""
     compared_groups = []
     for group in groups:
         cases = [case for case in group.cases if parts_of(case) is parts]
@@ -68,7 +68,7 @@ def with_entries(groups: CaseGroups, parts: Mapping[str, tuple[str, str]]) -> li
 
 
 def ledger_blocks(groups: CaseGroups, name: str, directory: Path) -> Blocks:
-    """Return the ledger of a study's scenes as a figure and a sentence; nothing where fewer than two cases have one."""
+    """Return the ledger of scenes as a figure and a sentence; nothing where fewer than two cases have one."""
     blocks: Blocks = []
     for parts in (PARTS, OPENING_PARTS):
         compared = with_entries(groups, parts)
@@ -87,7 +87,7 @@ def ledger_blocks(groups: CaseGroups, name: str, directory: Path) -> Blocks:
 
 
 def headline(groups: CaseGroups) -> str:
-    """Return what code, mesh and model form contribute, in plain sentences."""
+    """Return what code, mesh and model form contribute, in sentences."""
     displacement = part_values(groups, "model form", 0)
     pressure = part_values(groups, "model form", 1)
     if not displacement or not pressure:
@@ -99,7 +99,7 @@ def headline(groups: CaseGroups) -> str:
 
 
 def _shares(groups: CaseGroups, model_form: float) -> str:
-    """Say what code and mesh contribute, and that the rest is model form where both are below its least."""
+    """Say what code and mesh contribute; the rest is model form where both are below its least."""
     parts = {
         "code and rounding are": part_values(groups, "code", 0),
         "the finite-element mesh is": part_values(groups, "mesh", 0),
@@ -115,7 +115,7 @@ def _shares(groups: CaseGroups, model_form: float) -> str:
 
 
 def ledger_lines(groups: CaseGroups, parts: Mapping[str, tuple[str, str]]) -> LedgerLines:
-    """Return the ledger as lines of a figure."""
+    """Return the lines of the figure."""
     lines = []
     for group in groups:
         for case in group.cases:
@@ -125,7 +125,7 @@ def ledger_lines(groups: CaseGroups, parts: Mapping[str, tuple[str, str]]) -> Le
 
 
 def ledger_panels(lines: LedgerLines) -> list[ChartPanel]:
-    """Return a panel for each part that some case has: cases from above, displacement filled, contact pressure open.
+    """Return a panel for each part that a case has: cases from above, displacement filled, contact pressure open.
 
     What is below 1e-12 stands grey at the left edge, without a place of its own.
     """

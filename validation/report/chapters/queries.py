@@ -8,18 +8,18 @@ A *line* of the table is a case, one solver of a case, or a derived row. A query
                                     that the study keeps
     row = "dda at {blocks} blocks"  the derived rows of such names, whose words become expressions
     metric = "piece {piece}"        of these the metrics of such names, a line each: "piece" and "value" are its words
-    by = "solver"                   a line for each solver of a case, or for each "gate", with the words of its verdict
+    by = "solver"                   a line for each solver of a case, or for each "gate", with its verdict's words
     sort = "time.step"              an expression, or a list of them
 
-An expression says what is looked up of a line:
+An expression looks up in a line:
 
     "time.step"                     a datum of the scene
-    "label", "scene", "title"       of the case within its scene, and of its scene; "case": scene, and label if several
+    "label", "scene", "title"       of the case within its scene, of its scene; "case": scene, and label if several
     "dda mode1.frequency"           a metric of a solver; of that of the line, "* mode1.frequency"
     "dda work.unknowns"             work, seconds and their sum, "dda seconds"; "dda outcome"
     "dda|fem displacement.l2"       a metric of a pair
     "closed: drag"                  a metric of the derived row `closed` of the case, or of its scene
-    "bars/pieces: piece 1"          the same of another owner, in which words may stand, "impact-{method}/map: mean"
+    "bars/pieces: piece 1"          the same of another owner, which may hold words, "impact-{method}/map: mean"
     ": wave.left"                   a metric of the line's own derived row
     "blocks"                        a word of its name
     "a else b"                      the first of two that says something
@@ -50,29 +50,17 @@ PLACEHOLDER = re.compile(r"\\\{(\w+)\\\}")
 
 @dataclass(frozen=True)
 class Line:
-    """A line of the table of a study.
+    """A line of the table of a study."""
 
-    Attributes
-    ----------
-    name
-        The case, or the owner of a derived row.
-    group, case
-        The scene and the case, where it is one.
-    words
-        What the name of a derived row, or a split, says.
-    metrics
-        Those of the derived row.
-    """
-
-    name: str
+    name: str  # of the case, or of the owner of a derived row
     group: CaseGroup | None = None
     case: CaseResults | None = None
-    words: Metrics = field(default_factory=dict)
-    metrics: Metrics = field(default_factory=dict)
+    words: Metrics = field(default_factory=dict)  # what the name of a derived row, or a split, says
+    metrics: Metrics = field(default_factory=dict)  # of the derived row
 
 
 class StudyTable:
-    """The table of a study, from its results; of several the scenes and rows of all, the rest of the first."""
+    """The table of a study; of several the scenes and rows of all, the rest of the first."""
 
     def __init__(self, results: Results, *manifests: Manifest, drawn: bool = True) -> None:
         self.manifest = manifests[0]
@@ -120,7 +108,7 @@ class StudyTable:
                 yield self.groups[name], {}
 
     def _with_rows(self, query: Query) -> Iterator[Line]:
-        """Yield the derived rows whose names follow a pattern, by their owners' order in the query."""
+        """Yield the derived rows whose names follow a pattern, in their owners' order."""
         pattern = _pattern(query["row"])
         for wanted in _listed(query.get("scene") or query.get("of") or "*"):
             for (owner, name), metrics in self.derived.items():
@@ -165,7 +153,7 @@ class StudyTable:
         return None
 
     def number(self, line: Line, expression: str) -> float | None:
-        """Return a value where it is a number, which is finite."""
+        """Return a value where it is a finite number."""
         value = self.value(line, expression)
         is_number = isinstance(value, int | float) and math.isfinite(value)
         return float(value) if is_number else None  # type: ignore[arg-type]
@@ -209,7 +197,7 @@ class StudyTable:
         return True
 
     def grouped(self, lines: Sequence[Line], expressions: Sequence[str]) -> list[list[Line]]:
-        """Return lines in groups of one value in each expression, in the order of first lines; else one by one."""
+        """Return lines in groups of one value in each expression, ordered by first lines; else one by one."""
         if not expressions:
             return [[line] for line in lines]
         groups: dict[tuple[Value, ...], list[Line]] = {}
@@ -219,7 +207,7 @@ class StudyTable:
 
 
 def value_of_case(case: CaseResults, group: CaseGroup | None, expression: str) -> Value:
-    """Return its label, a datum of its scene, a metric of a solver, or one of a pair that its group has compared."""
+    """Return its label, a datum of its scene, a metric of a solver, or one of a compared pair."""
     if expression == "label":
         return case.label
     source, _, metric = expression.partition(" ")
@@ -247,7 +235,7 @@ def _words(match: re.Match[str]) -> dict[str, Value]:
 
 
 def _words_of_owner(owner: str, wanted: str) -> dict[str, Value] | None:
-    """Return the words of what owns a row, or of its scene, None where it is another one."""
+    """Return the words of the owner of a row, or of its scene, None where it is another."""
     for name in (owner, scene_of(owner)):
         if match := _pattern(wanted).fullmatch(name):
             return _words(match)
@@ -257,7 +245,6 @@ def _words_of_owner(owner: str, wanted: str) -> dict[str, Value] | None:
 
 
 def _by_metric(line: Line, text: str) -> Iterator[Line]:
-    """Yield a derived row metric by metric."""
     pattern = _pattern(text)
     for name, value in line.metrics.items():
         if match := pattern.fullmatch(name):
@@ -269,7 +256,7 @@ def _listed(value: str | Sequence[str]) -> Sequence[str]:
 
 
 def _number(text: str) -> Value:
-    """Return a word of a name, as a number where it is one."""
+    """Return a word, as a number where it is one."""
     try:
         return float(text)
     except ValueError:
@@ -277,7 +264,7 @@ def _number(text: str) -> Value:
 
 
 def _order(value: Value) -> tuple[bool, float, str]:
-    """Return a key by which numbers go before words."""
+    """Return a key that sorts numbers before words."""
     is_number = isinstance(value, int | float)
     return (not is_number, float(value) if is_number else 0.0, "" if is_number else str(value))  # type: ignore[arg-type]
 

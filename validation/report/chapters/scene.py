@@ -60,7 +60,7 @@ def scene_chapter(results: Results, manifest: Manifest, directory: Path) -> Bloc
 
 
 def scene_page(group: CaseGroup, directory: Path) -> Blocks:
-    """Return the page of a scene: finding, what page 1 of a report says, the case that shows it best, all cases."""
+    """Return the page of a scene: finding, summary, the case that shows it best, all cases."""
     _, finding, *section = scene_section(group, directory, () if _is_shown_whole(group) else None)
     summary = scene_summary(group, directory)
     lead = lead_figure(group, directory)
@@ -68,7 +68,7 @@ def scene_page(group: CaseGroup, directory: Path) -> Blocks:
 
 
 def opening(manifest: Manifest, verdicts: Verdicts = (), lead: str = "", remark: str = "") -> Blocks:
-    """Return what a chapter begins with: title, `lead`, and a paragraph of purpose, `remark` and what the gates say."""
+    """Return title, `lead`, and a paragraph of purpose, `remark` and what the gates say."""
     gates = f"{gate_count(verdicts).capitalize()}." if verdicts else ""
     text = " ".join(filter(None, (manifest.get("purpose"), remark, gates)))
     sources = sources_of(manifest.get("study", ""))
@@ -86,16 +86,7 @@ def scene_section(
 ) -> Blocks:
     """Return the section of one scene: its finding in words, the figure that shows it, the numbers that matter.
 
-    Parameters
-    ----------
-    group
-        The scene.
-    directory
-        Where the figure is written.
-    columns
-        Columns of histories that the figure holds, all by default.
-    without
-        Solvers that are left out of the figure.
+    The figure holds `columns` of histories, by default all, `without` some solvers.
     """
     blocks = [Heading(group.title, 2), Paragraph(conclusion(group)), *outcomes(group)]
     drawn_columns = [name for name in _columns(group) if columns is None or name in columns]
@@ -108,11 +99,11 @@ def scene_section(
     return blocks
 
 
-# ---- sentences ----------------------------------------------------------------------------------------------------
+# ---- sentences ----
 
 
 def conclusion(group: CaseGroup) -> str:
-    """Return one plain sentence on a scene, computed from its comparisons and verdicts."""
+    """Return a sentence on a scene, from its comparisons and verdicts."""
     parts = (_agreement(group), gate_count(group.verdicts), _tension(group), _damped_agreement(group))
     text = "; ".join(part for part in parts if part)
     return f"{capital(text)}."
@@ -135,7 +126,7 @@ def _agreement(group: CaseGroup) -> str:
 
 
 def _windows(group: CaseGroup, solver: str, reference: str) -> str:
-    """Return over which time a pair was compared, of which a relative L2 difference of undamped motions depends."""
+    """Return over which time a pair was compared; a relative L2 difference of undamped motions depends on it."""
     compared = filter(None, (group.comparison(case, solver, reference) for case in group.cases))
     windows = [float(pair.get("window") or 0.0) for pair in compared]
     if not windows or min(windows) <= 0:
@@ -146,7 +137,7 @@ def _windows(group: CaseGroup, solver: str, reference: str) -> str:
 
 
 def gate_count(verdicts: Verdicts) -> str:
-    """Return how many gates pass, fail or did not run, as part of a sentence."""
+    """Return how many gates pass, fail or did not run."""
     count = Counter(v["verdict"] for v in verdicts)
     if not verdicts:
         return "no gate judges this scene"
@@ -179,7 +170,7 @@ def _tension(group: CaseGroup) -> str:
 
 
 def _damped_agreement(group: CaseGroup) -> str:
-    """Warn where the agreement grows with the damping, since agreement alone then rewards the worse run."""
+    """Warn where the agreement grows with the damping: alone it then rewards the worse run."""
     pairs = []
     for case in group.cases:
         xi = case.number("dda", "mode1.damping")
@@ -196,7 +187,7 @@ def _damped_agreement(group: CaseGroup) -> str:
 
 
 def outcomes(group: CaseGroup) -> Blocks:
-    """Name every outcome other than completed, with its sentence; cases that share it share a line."""
+    """Name every outcome but completed, with its sentence and the cases that share it."""
     labels_by_outcome: dict[tuple[str, Outcome, tuple[str, ...]], list[str]] = {}
     for case in group.cases:
         for solver, row in case.rows.items():
@@ -209,11 +200,11 @@ def outcomes(group: CaseGroup) -> Blocks:
     return blocks
 
 
-# ---- figures ------------------------------------------------------------------------------------------------------
+# ---- figures ----
 
 
 def _columns(group: CaseGroup) -> list[str]:
-    """Return the columns that some solver reports: those of a kind in the scene's order, displacement first."""
+    """Return the columns that solvers report: those of a kind in the scene's order, displacement first."""
     names: set[str] = set()
     for case in group.cases:
         names.update(*(history.columns for history in case.histories.values()))
@@ -234,7 +225,7 @@ def lead_figure(group: CaseGroup, directory: Path) -> Blocks:
 
 
 def slide_figure(group: CaseGroup) -> Figure | None:
-    """Return the figure that opens the page of a scene for a slide, under the title of the scene."""
+    """Return the figure that opens the page of a scene, under its title, for a slide."""
     columns = _columns(group)[:LEAD_COLUMNS]
     panel, _ = lead_panel(group, columns)
     if panel is None:
@@ -277,7 +268,7 @@ def lead_panel(group: CaseGroup, columns: Sequence[str]) -> tuple[HistoryPanel |
 
 
 def _is_shown_whole(group: CaseGroup) -> bool:
-    """Whether the figure that opens the page of a scene shows all: one case, its columns and steps."""
+    """Whether the opening figure of a page shows all: one case, its columns and steps."""
     columns = _columns(group)
     case, *others = group.cases
     if others or not 0 < len(columns) <= LEAD_COLUMNS:
@@ -286,13 +277,13 @@ def _is_shown_whole(group: CaseGroup) -> bool:
 
 
 def _judged(panel: HistoryPanel) -> str | None:
-    """Return the solver of a panel that is judged: DDA, or the first beside the reference."""
+    """Return the judged solver of a panel: DDA, or the first beside the reference."""
     solvers = [name for name in panel.histories if name != panel.reference]
     return min(solvers, key=lambda name: role(name) is not Role.JUDGED, default=None)
 
 
 def lead_difference(panel: HistoryPanel, column: str) -> float | None:
-    """Return the relative L2 difference that a panel shows between its judged solver and its reference.
+    """Return the relative L2 difference between the judged solver of a panel and its reference.
 
     None where they cannot be compared, one of them blew up, or all that they differ by is rounding.
     """
@@ -309,9 +300,9 @@ def lead_difference(panel: HistoryPanel, column: str) -> float | None:
 
 
 def free_window(case: CaseResults, column: str) -> float:
-    """Return over which time [s] a case is shown: the first periods of a vibration, or all of a motion that is driven.
+    """Return the time [s] that is shown of a case: the first periods of a vibration, or all of a driven motion.
 
-    Where no solver knows the frequency of the first mode, a period is what a history swings in.
+    Where no solver knows the first frequency, a period is what a history swings in.
     """
     end = min(_ends([case]), default=0.0)
     tables = case.scene.tables()
@@ -331,7 +322,7 @@ def free_window(case: CaseResults, column: str) -> float:
 def history_block(
     group: CaseGroup, columns: Sequence[str], directory: Path, without: Sequence[str] = ()
 ) -> FigureBlock:
-    """Draw columns of a scene's cases over the time that all of them run, and return the figure with its caption."""
+    """Draw columns of a scene's cases over the time that all of them run; return the figure's block."""
     cases = [group.cases[i] for i in evenly(len(group.cases), MOST_PANELS)]
     ends = _ends(cases)
     window = min(ends, default=0.0)  # cases of one figure are compared over the same time
@@ -352,7 +343,7 @@ def history_block(
 
 
 def _ends(cases: Sequence[CaseResults]) -> list[float]:
-    """Return the last instant [s] of each case that has one, of its solver that runs longest."""
+    """Return the last instant [s] of each case that has one, of its longest run."""
     ends = []
     for case in cases:
         last = [float(history.time[-1]) for history in case.histories.values() if len(history.time)]
@@ -361,7 +352,7 @@ def _ends(cases: Sequence[CaseResults]) -> list[float]:
 
 
 def _settling_time(cases: Sequence[CaseResults], columns: Sequence[str], without: Sequence[str]) -> float:
-    """Return a time [s] by which every drawn line has long settled, and which is worth to end at; else infinity."""
+    """Return a time [s] to end at, by which every drawn line has long settled; else infinity."""
     latest = 0.0
     for case in cases:
         for solver in set(case.histories) - set(without):

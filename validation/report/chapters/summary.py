@@ -56,7 +56,7 @@ def scene_summary(group: CaseGroup, directory: Path) -> Blocks:
 
 
 def overview(groups: Groups) -> Table:
-    """Return a line for each scene: how far DDA is off, what its first mode is damped by, what a run costs."""
+    """Return a line for each scene: how far DDA is off, how its first mode is damped, what a run costs."""
     lines = []
     for group in groups.values():
         own: dict[str, Value] = {"title": group.title, "cases": float(len(group.cases))}
@@ -73,7 +73,7 @@ def overview(groups: Groups) -> Table:
 
 
 def _table(name: str, lines: Lines, **values: str) -> Table:
-    """Return a table without the columns that say nothing; a case is named in its first line."""
+    """Return a table without columns that say nothing; a case is named in its first line."""
     described = PAGE.columns(name)
     rows = []
     previous = ""
@@ -85,11 +85,11 @@ def _table(name: str, lines: Lines, **values: str) -> Table:
     return PAGE.table(name, [[row[i] for i in kept] for row in rows], [described[i].head for i in kept], **values)
 
 
-# ---- choices --------------------------------------------------------------------------------------------------------
+# ---- choices ----
 
 
 def choices(group: CaseGroup) -> Iterator[tuple[str, str]]:
-    """Yield time step, springs and discount of the cases, and what they do."""
+    """Yield time step, springs and discount, and what they do."""
     scenes = [case.scene for case in group.cases]
     hooks = ShowingHooks.of(scenes[0])
     yield "Time step.", _step(group, scenes)
@@ -129,11 +129,11 @@ def _discount(scenes: Sequence[Scene]) -> str:
     return f"gg = {range_of(discounts)} per step{at_steps}."
 
 
-# ---- error and cost -------------------------------------------------------------------------------------------------
+# ---- error and cost ----
 
 
 def reference_of(group: CaseGroup, case: CaseResults) -> str | None:
-    """Return the best reference of a case that something was compared with: exact in time as well, else in space."""
+    """Return the best reference that a case was compared with: exact in time as well, else in space."""
     for wanted in (Role.TRUTH, Role.REFERENCE, Role.LIMIT):
         for name in by_role(wanted):
             if name in case.rows and any(errors_of(group, case, solver, name) for solver in case.rows):
@@ -142,7 +142,7 @@ def reference_of(group: CaseGroup, case: CaseResults) -> str | None:
 
 
 def errors_of(group: CaseGroup, case: CaseResults, solver: str, reference: str | None) -> dict[str, float]:
-    """Return the relative L2 differences of a solver from a reference that have a number."""
+    """Return the relative L2 differences of a solver from a reference."""
     values = {} if reference is None else group.compared(case, solver, reference)
     return {metric: float(values[metric]) for metric in ERRORS if isinstance(values.get(metric), int | float)}
 
@@ -153,7 +153,7 @@ def seconds_of(row: Row) -> float:
 
 
 def error_blocks(group: CaseGroup) -> Blocks:
-    """Return error and cost of each solver in each case, against which reference, and the fastest run to an error."""
+    """Return error and cost of each solver in each case, the reference, and the fastest run to an error."""
     chosen = [group.cases[i] for i in evenly(len(group.cases), MOST_CASES)]
     lines = []
     for case in chosen:
@@ -172,7 +172,7 @@ def error_blocks(group: CaseGroup) -> Blocks:
 
 
 def reference_note(group: CaseGroup, case: CaseResults) -> str:
-    """Say how far the reference itself can be trusted."""
+    """Say how far the reference can be trusted."""
     reference = reference_of(group, case)
     if reference is None:
         return "No reference applies here, or none was run."
@@ -208,7 +208,7 @@ def _frequency(group: CaseGroup) -> Blocks:
 
 
 def fastest(group: CaseGroup) -> Blocks:
-    """Return which run is the fastest within an error of the displacement; nothing of a single case."""
+    """Return the fastest run within each error of the displacement; nothing of a single case."""
     runs = []  # seconds, error, words
     for case in group.cases:
         reference = reference_of(group, case)
@@ -228,7 +228,7 @@ def fastest(group: CaseGroup) -> Blocks:
     return [Paragraph(PAGE.text(name, runs="; ".join(parts), level=percent(LEVELS[0])))]
 
 
-# ---- damping --------------------------------------------------------------------------------------------------------
+# ---- damping ----
 
 
 def _frequency_of(case: CaseResults) -> float | None:

@@ -60,14 +60,14 @@ def range_of(values: Iterable[float]) -> str:
 
 
 def cell(value: Value) -> str:
-    """Return a metric as a table cell: a number, or its word, or a dash where there is none."""
+    """Return a metric as a table cell: a number, its word, or a dash."""
     if value is None:
         return DASH
     return _WORDS.get(value, value) if isinstance(value, str) else plain(value)
 
 
 def word_notes(values: Iterable[Value]) -> tuple[str, ...]:
-    """Return what the short words in a table's cells stand for."""
+    """Return what the short words in cells stand for."""
     words = set(values)
     return tuple(f"{short_word}: {meaning}" for word, short_word, meaning in _MEANINGS if word in words)
 
@@ -80,7 +80,7 @@ def case_labels(names: Sequence[str], scenes: Sequence[Scene]) -> list[str]:
 
 
 def case_label(name: str, scene: Scene, without: Collection[str] = ()) -> str:
-    """Return the swept values of a case in the symbols of the text, without those of some fields."""
+    """Return the swept values of a case in the symbols of the text, without some fields."""
     parts = []
     for field, value in CaseName.parse(name).values.items():
         if field in without:
@@ -97,7 +97,7 @@ def case_label(name: str, scene: Scene, without: Collection[str] = ()) -> str:
 
 @functools.cache
 def _symbol(field: str) -> tuple[str, str]:
-    """Return the symbol of a key and its unit, as they stand beside a number."""
+    """Return the symbol of a key and its unit."""
     tables = tables_of_scenes()
     place, _, name = key_of_any_entry(field, tables).rpartition(".")
     table = tables.get(place)
@@ -120,12 +120,12 @@ def _pressure(text: str) -> tuple[str, str]:
 
 
 def parameters(scene: Scene, varied: set[str]) -> str:
-    """Return the data of a scene in one line, without the fields that vary between its cases."""
+    """Return the data of a scene in one line, without the varied fields."""
     return f"{', '.join(parameter_items(scene, varied))}."
 
 
 def parameter_items(scene: Scene, varied: set[str]) -> list[str]:
-    """Return the data of a scene by their symbols or keys, without the fields that vary between its cases."""
+    """Return the data of a scene by symbol or key, without the varied fields."""
     hooks = ShowingHooks.of(scene)
     items = list(hooks.bodies(scene, varied))
     for place, table in scene.tables().items():

@@ -11,10 +11,10 @@ and is left out where a table or figure that it names shows nothing:
     { section = "figure-7", columns = ["displacement"] }   the section of a scene, `without` the exact solutions
     { ledger = true }                                      where the energy of each scene went
     { history = "long-run", columns = ["displacement"] }   the histories of a scene
-    { outcomes = 3 }                                       as many callouts on runs that did not complete
+    { outcomes = 3 }                                       at most so many callouts on runs that did not complete
     { picture = "cuts" }                                   scenes as they are drawn
     { frames = "push" }                                    a motion at some instants, with contact forces
-    { call = "f" }                                         what the function f(table, directory) of chapter.py returns
+    { call = "f" }                                         what f(table, directory) of chapter.py returns
     { sketch = "figures-3-4", share = 0.4, beside = [] }   the two-block model of a scene, and parts beside it
     { points = ["a", "b"], heading = "In {count} points" } texts, each after ``NAME-question``; what has no numbers goes
 
@@ -72,24 +72,12 @@ LINE_FIELDS = {one.name for one in fields(ChartLine)} - {"name", "x", "y", "shad
 
 @dataclass(frozen=True)
 class WrittenChapter:
-    """A chapter that is written from the table of its study.
-
-    Attributes
-    ----------
-    page
-        The description.
-    table
-        The table of the study.
-    directory
-        Where figures are drawn.
-    module
-        The functions that parts call.
-    """
+    """A chapter that is written from the table of its study."""
 
     page: Description
     table: StudyTable
-    directory: Path
-    module: ModuleType | None = None
+    directory: Path  # of figures
+    module: ModuleType | None = None  # with the functions that parts call
 
     def blocks(self, name: str = "parts") -> Blocks:
         """Return the blocks of all parts, or of those of another list."""
@@ -171,7 +159,7 @@ class WrittenChapter:
         tone = part.get("tone", "plain")
         return [Callout(text, tone) if tone in ("fail", "warn", "pass", "rule") else Paragraph(text, tone)]
 
-    # ---- sentences --------------------------------------------------------------------------------------------------
+    # ---- sentences ----
 
     def text(self, name: str) -> str:
         """Return a text with its numbers; where one is missing that of ``NAME-without``, or nothing."""
@@ -182,7 +170,7 @@ class WrittenChapter:
         return text.format_map(values)
 
     def _word(self, name: str) -> str | None:
-        """Return what a name in a text stands for, None where it has no number."""
+        """Return what a name in a text stands for, None without a number."""
         if name == "gates":
             return f"{gate_count(self.table.verdicts).capitalize()}."
         if self.page.has("list", name):
@@ -200,11 +188,11 @@ class WrittenChapter:
         return text if is_whole else number.get("pattern", "{}").format(text)
 
     def _with_words(self, column: Query) -> Query:
-        """Return a column whose words, where it says ``words_of``, are those that the study keeps under that name."""
+        """Return a column, with the words that the study keeps under its ``words_of``."""
         return column | {"words": self.table.data.get(column["words_of"], {})} if "words_of" in column else column
 
     def _list(self, described: Query, lines: Sequence[Line] | None = None) -> str | None:
-        """Return the lines of a list, or these, as one text: each with its numbers, those that have them all."""
+        """Return the lines of a list, or these, that have all their numbers, as one text."""
         texts = []
         asked = self.table.lines(described) if lines is None else lines
         for group in self.table.grouped(asked, described.get("group_by", ())):
@@ -214,7 +202,7 @@ class WrittenChapter:
         text: str = described.get("join", ", ").join(texts)
         return (capital(text) if described.get("capital") else text) or None
 
-    # ---- tables -----------------------------------------------------------------------------------------------------
+    # ---- tables ----
 
     def _table(self, name: str, query: Query = NO_QUERY) -> list[Table]:
         described = _within(self.page.described("table", name), query)
@@ -254,7 +242,7 @@ class WrittenChapter:
         values = {word: self._word(word) or DASH for _, word, _, _ in string.Formatter().parse(text) if word}
         return text.format_map(values) if values else text
 
-    # ---- figures ----------------------------------------------------------------------------------------------------
+    # ---- figures ----
 
     def _figure(self, name: str, query: Query = NO_QUERY, file: str = "") -> list[FigureBlock]:
         described = self.page.described("figure", name)
@@ -276,7 +264,7 @@ class WrittenChapter:
         return [self.page.figure(name, panels, self.directory, scene, whole_caption=caption, file=file)]
 
     def _marks(self, marks: Query) -> dict[str, float]:
-        """Return marks, at a number or where a number of the chapter stands, which may stand in their words as well."""
+        """Return marks, at a number or where one of the chapter stands, which their words may hold as well."""
         places: dict[str, float] = {}
         for words, place in marks.items():
             if isinstance(place, str):
@@ -287,7 +275,7 @@ class WrittenChapter:
         return places
 
     def _figure_of_cases(self, name: str, described: Query) -> list[FigureBlock]:
-        """Return a figure of histories over time steps, with a panel for each case of a scene."""
+        """Return a figure of histories over time steps, a panel for each case of a scene."""
         panel_name = described["panel"]
         panel = self.page.described("panel", panel_name)
         panels = []
@@ -316,7 +304,7 @@ class WrittenChapter:
         return [self.page.figure(name, panels, self.directory, **values)]
 
     def _picture(self, name: str) -> Blocks:
-        """Return scenes as they are drawn, of the first case of each scene."""
+        """Return the first case of each scene as it is drawn."""
         described = self.page.described("picture", name)
         cut = []
         for scene, title in described["scenes"].items():
@@ -343,7 +331,7 @@ class WrittenChapter:
         return []
 
     def _lines(self, line: Query) -> Iterator[ChartLine]:
-        """Yield the lines of one entry of a panel: one, or one for each value of ``each``, or for each history."""
+        """Yield the lines of an entry of a panel: one, or one for each value of ``each`` or history."""
         if "data" in line:
             yield from self._curves(line)
             return
@@ -362,7 +350,6 @@ class WrittenChapter:
                 yield self._named(line, colored, group[0], key)
 
     def _named(self, line: Query, drawn: ChartLine, first: Line, key: Value) -> ChartLine:
-        """Return a line in its name and look."""
         look = {name: line[name] for name in LINE_FIELDS if name in line}
         looks = line.get("looks", {})
         if isinstance(looks, str):
@@ -377,7 +364,7 @@ class WrittenChapter:
         return replace(drawn, **look)
 
     def _points(self, line: Query, group: Sequence[Line]) -> ChartLine:
-        """Return the points of some lines of the table that have both numbers."""
+        """Return the points of the lines of the table that have both numbers."""
         if "x_ends" in line:  # a level, from end to end
             level = self.table.number(group[0], line["y"])
             return ChartLine("", np.array(line["x_ends"]), np.full(2, level or np.nan) * line.get("y_factor", 1.0))
@@ -399,7 +386,7 @@ class WrittenChapter:
         return ChartLine("", np.array(x_values), np.array(y_values), notes=tuple(notes))
 
     def _history(self, line: Query, row: Line) -> ChartLine | None:
-        """Return a column of a history over time, or the mean of some; it is drawn, and no number comes from it."""
+        """Return a column of a history over time, or the mean of some; it is only drawn."""
         history = None if row.case is None else row.case.histories.get(line["history"])
         if history is None:
             return None
@@ -417,7 +404,7 @@ class WrittenChapter:
         return (self.table.number(row, line[f"{axis}_over"]) or np.nan) if f"{axis}_over" in line else 1.0
 
     def _curves(self, line: Query) -> Iterator[ChartLine]:
-        """Yield the curves that the study keeps as plain data: one, or a list of them."""
+        """Yield the curves that the study keeps as plain data: one, or a list."""
         data: Any = self.table.data
         for key in line["data"].split("."):
             data = data.get(key, {})
@@ -430,10 +417,10 @@ class WrittenChapter:
             own = {key: value for key, value in curve.items() if isinstance(value, str)}
             yield self._named(line, drawn, Line("", words=own), curve.get(line.get("each", "")))
 
-    # ---- maps -------------------------------------------------------------------------------------------------------
+    # ---- maps ----
 
     def _maps(self, name: str) -> list[FigureBlock]:
-        """Return maps of numbers over two expressions: a line for each scene, a map for each expression."""
+        """Return maps of numbers over two expressions: a line a scene, a map an expression."""
         described = self.page.described("maps", name)
         rows = described["rows"]
         columns = described["columns"]
@@ -475,7 +462,7 @@ class WrittenChapter:
 
 
 def _within(described: Query, query: Query) -> Query:
-    """Return a described query with a further one: it meets both."""
+    """Return a described query that meets a further one too."""
     return described | query | {"where": described.get("where", {}) | query.get("where", {})}
 
 

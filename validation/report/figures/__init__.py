@@ -1,4 +1,1 @@
-"""Figures: the only room that imports matplotlib.
-
-Functions of arrays; no results directory comes in.
-"""
+"""Figures of arrays: the only room that imports matplotlib."""

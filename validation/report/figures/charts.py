@@ -1,7 +1,7 @@
 """Charts: lines in panels, described once and drawn by one function.
 
 A chapter says what the lines are and what the axes mean; how an axis is numbered, where a name stands and how a
-hairline looks is decided here. PDF and site set the same drawing.
+hairline looks is decided here.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ MARKED = 9.0  # mm above the panels: room for the words of marks below the title
 
 @dataclass(frozen=True)
 class ChartLine:
-    """A line and its name, which stands beside its end; without a name it has none."""
+    """A line and its name, which stands beside its end."""
 
     name: str
     x: Array
@@ -97,7 +97,7 @@ def chart_figure(
     Parameters
     ----------
     panels
-        The panels; as many in each row, of which the last may be None: these places stay empty.
+        As many in each row, of which the last may be None: these places stay empty.
     height
         Height of one row [mm], or height of each row and gap below it.
     margins
@@ -124,7 +124,6 @@ def chart_figure(
             if shared:
                 _share_y([axes for axes, _ in pairs])
             for axes, panel in pairs:
-                # Write the title, label and number the axes, draw hairlines.
                 axes.set(xlabel=panel.x_label, ylabel=panel.y_label)
                 axes.set_title(panel.title, pad=12.0 if has_marked_top else None)
                 _number_axis(axes, axes.xaxis, panel.logarithmic[0], panel.x_ticks)
@@ -152,7 +151,7 @@ def _margins_for(panels: Sequence[ChartPanel]) -> Margins:
 
 
 def _draw_lines(axes: Axes, panel: ChartPanel) -> None:
-    """Draw the lines of a panel and set its scales and ranges."""
+    """Draw the lines of a panel; set its scales and ranges."""
     for line in panel.lines:
         draw_chart_line(axes, line)
     scales = ["log" if logarithmic else "linear" for logarithmic in panel.logarithmic]
@@ -242,7 +241,7 @@ def _write_names(axes: Axes, panel: ChartPanel) -> None:
 
 
 def name_at_ends(axes: Axes, lines: Sequence[ChartLine]) -> None:
-    """Write the names beside the values at the largest x that is drawn."""
+    """Write the names beside the values at the largest drawn x."""
     labels: dict[str, EndLabel] = {}
     low, high = axes.get_ylim()
     for line in lines:

@@ -1,6 +1,6 @@
 """What figures draw, before anything is drawn: the house style, thinned curves, differences, places of labels.
 
-Every solver has one colour and one line style everywhere, of a palette that colour-blind readers can tell apart.
+Every solver has one colour and one line style everywhere, which colour-blind readers can tell apart.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _OTHER_DASHES: tuple[tuple[float, ...], ...] = ((6.0, 2.0), (3.0, 1.5, 1.0, 1.5)
 
 
 def style_of(name: str) -> LineStyle:
-    """Return the style of a solver; an unknown name gets one that depends on the name alone."""
+    """Return the style of a solver; that of an unknown one depends on its name alone."""
     if name == EXACT:
         return LineStyle("#444444", (), 0.8, 1)
     declared = get_solver(name).line if is_solver(name) else None
@@ -43,7 +43,7 @@ def style_of(name: str) -> LineStyle:
 
 
 def dash_style(dash: tuple[float, ...]) -> str | tuple[float, tuple[float, ...]]:
-    """Return the line style of matplotlib for dashes and gaps [pt], solid where there are none."""
+    """Return the line style of matplotlib for dashes and gaps [pt], solid without any."""
     return (0, dash) if dash else "-"
 
 
@@ -60,13 +60,13 @@ def thin(x: Array, y: Array, points: int = 800) -> ArrayPair:
 
 
 def evenly(count: int, most: int) -> list[int]:
-    """Return at most so many of the numbers 0 to `count` - 1, evenly taken, the first and the last among them."""
+    """Return at most so many of the numbers 0 to `count` - 1, evenly taken, first and last among them."""
     indices: list[int] = np.unique(np.linspace(0, count - 1, most).round().astype(int)).tolist()
     return indices
 
 
 def band(x: Array, y: Array, bins: int) -> tuple[Array, Array, Array]:
-    """Return the middles of equal parts of the samples, and the least and the greatest value in each."""
+    """Return the middles of equal parts of the samples, and the least and greatest value in each."""
     edges = np.unique(np.linspace(0, x.size, bins + 1).astype(int))
     low, high = (function.reduceat(y, edges[:-1]) for function in (np.minimum, np.maximum))
     return (x[edges[:-1]] + x[edges[1:] - 1]) / 2, low, high
@@ -75,8 +75,7 @@ def band(x: Array, y: Array, bins: int) -> tuple[Array, Array, Array]:
 def nudge(places: Sequence[float], gap: float, low: float, high: float) -> NDArray[np.float64]:
     """Return places at least `gap` apart, in the order of and as near as possible to the given ones.
 
-    The least-squares answer: isotonic regression of ``places - gap * rank``, clipped so that all places
-    stay within [low, high] as long as they fit.
+    The least-squares answer: isotonic regression of ``places - gap * rank``, clipped to [low, high] as long as all fit.
     """
     from scipy.optimize import isotonic_regression
 
@@ -111,7 +110,7 @@ class HistoryPanel:
     own: OwnColumns = field(default_factory=dict)  # columns that only its kind of scene has
 
     def drawn(self, column: str) -> dict[str, History]:
-        """Return the histories that a column is drawn from, by solver."""
+        """Return the histories of which a column is drawn, by solver."""
         finest = {name: self.finer.get(name, history) for name, history in self.histories.items()}
         return {name: history for name, history in finest.items() if column in history.columns}
 
@@ -120,7 +119,7 @@ HistoryPanels = Sequence[HistoryPanel]
 
 
 def common_range(panels: HistoryPanels, column: str) -> tuple[float, float]:
-    """Return the common range of a column; histories that blow up are cut at six static values."""
+    """Return the common range of a column; what blows up is cut at six static values."""
     kinds = [kind for panel in panels if (kind := kind_of(column, panel.own))]
     from_zero = all(kind.from_zero for kind in kinds)
     drawn = [history.columns[column] for panel in panels for history in panel.drawn(column).values()]
@@ -141,7 +140,7 @@ def common_range(panels: HistoryPanels, column: str) -> tuple[float, float]:
 
 
 def differences(panel: HistoryPanel, column: str) -> dict[str, ArrayPair]:
-    """Return the largest magnitude of each solver's scaled difference from the reference in each part of the time."""
+    """Return the largest magnitude of each solver's scaled difference from the reference by parts of the time."""
     base = panel.histories.get(panel.reference or "", panel.base)
     if base is None or column not in base.columns:
         return {}

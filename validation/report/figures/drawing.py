@@ -32,10 +32,7 @@ HEIGHTS = (14.0, 46.0)  # mm, the least and the greatest
 class Sketch:
     """Axes in metres that a scene is drawn on, turned by the slope of its ground.
 
-    Attributes
-    ----------
-    size
-        The larger side of the body [m], of which arrows, springs and the ground are a share.
+    `size` is the larger side of the body [m], of which arrows, springs and the ground are a share.
     """
 
     def __init__(self, axes: Axes, bodies: Sequence[ArrayLike], slope: float = 0.0) -> None:
@@ -59,11 +56,11 @@ class Sketch:
         self.axes.add_patch(Polygon(self._placed(points), **look))  # type: ignore[arg-type]
 
     def line(self, points: ArrayLike, width: float = 0.6, **look: object) -> None:
-        """Draw a line through points."""
+        """Draw a line."""
         self.axes.plot(*self._placed(points).T, color="black", lw=width, **look)  # type: ignore[arg-type]
 
     def arrow(self, tail: ArrayLike, vector: ArrayLike, words: str = "", head: str = "-|>", va: str = "bottom") -> None:
-        """Draw an arrow, with words at its tail: above it, or below with `va` "top"."""
+        """Draw an arrow with words at its tail: above it, or below with `va` "top"."""
         start, end = self._placed(np.array([tail, np.add(tail, vector)]))
         look = {"arrowstyle": f"{head},head_width=0.12,head_length=0.28", "lw": 0.6, "shrinkA": 0, "shrinkB": 0}
         self.axes.annotate("", end, start, arrowprops=look, zorder=4)
@@ -71,7 +68,7 @@ class Sketch:
             self.axes.annotate(words, start, (2.5, 1.0), textcoords="offset points", fontsize=6.5, va=va)
 
     def dot(self, point: Sequence[float]) -> None:
-        """Draw a dot at a point."""
+        """Draw a dot."""
         self.axes.plot(*self._placed([point]).T, color="black", marker="o", ms=1.6, lw=0)
 
     def spring(self, foot: Sequence[float]) -> None:
@@ -93,7 +90,7 @@ class Sketch:
         self.line([start, end], 1.2)
 
     def ground(self, depth: float = 0.0, base: ArrayLike | None = None, moves: bool = False) -> None:
-        """Draw the ground so deep below a base, y = 0 without one, with a double arrow where it moves."""
+        """Draw the ground so deep below a base, by default y = 0, with a double arrow where it moves."""
         left, right = ((self.low[0], 0.0), (self.high[0], 0.0)) if base is None else np.asarray(base)
         beyond = 0.12 * self.size * np.subtract(right, left) / math.dist(left, right)
         below = np.array([0.0, -depth])
@@ -124,11 +121,11 @@ class FigureHooks(Hooks):
     module = "figure"
 
     def draw(self, axes: Axes, scene: Scene) -> None:
-        """Draw a scene on a `Sketch` of these axes, and set their limits."""
+        """Draw a scene on a `Sketch` of these axes; set their limits."""
         axes.set_axis_off()
 
     def frames(self, scene: Scene, history: History, steps: Sequence[int], solver: str, height: float) -> Figure | None:
-        """Draw the bodies at some steps of a motion side by side, so many mm high; None where a kind does not."""
+        """Draw the bodies at some steps of a motion side by side, `height` mm high; None where a kind does not."""
         return None
 
 
@@ -143,7 +140,7 @@ def scene_figure(scene: Scene) -> Figure:
 
 
 def scenes_figure(drawn: Sequence[tuple[str, Scene]], height: float) -> Figure:
-    """Draw scenes side by side, each under its title, to one scale of its own, so many mm high."""
+    """Draw scenes side by side, so many mm high, each with its title and a scale of its own."""
     with house_style():
         figure, ((*row,),) = axes_grid([(height, 0.0)], len(drawn), MARGINS)
         for axes, (title, scene) in zip(row, drawn, strict=True):

@@ -1,4 +1,4 @@
-"""Figures in one house style: lines carry their names at their ends instead of a legend, axes carry units."""
+"""Figures in one house style: lines carry their names at their ends, axes carry units."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ TITLE_LINE = 3.2  # mm, height of a line of it, amply
 
 @contextmanager
 def house_style() -> Iterator[None]:
-    """Apply the house style for the time of a drawing or saving."""
+    """Apply the house style while drawing or saving."""
     with mpl.rc_context(HOUSE_STYLE):
         yield
 
@@ -47,7 +47,7 @@ def save(figure: Figure, path: Path) -> Path:
 
 
 def saved(figure: Figure, directory: Path, file: str, caption: str, scene: str = "") -> FigureBlock:
-    """Write a figure, of one scene or of none, into a directory and return its block."""
+    """Write a figure, of one scene or of none, into a directory; return its block."""
     save(figure, directory / file)
     return FigureBlock(file, caption, scene)
 
@@ -66,7 +66,7 @@ class Margins:
 def axes_grid(
     rows: Sequence[tuple[float, float]], columns: int, margins: Margins, width: float = WIDTH
 ) -> tuple[Figure, list[list[Axes]]]:
-    """Return a figure with axes placed in millimetres: each row has its height and the gap below it."""
+    """Return a figure with axes placed in millimetres: each row has a height and a gap below it."""
     height = margins.top + sum(map(sum, rows)) - rows[-1][1] + margins.bottom
     across = (width - margins.left - margins.right - margins.between * (columns - 1)) / columns
     left_edges = [margins.left + j * (across + margins.between) for j in range(columns)]
@@ -92,7 +92,7 @@ def size_of(axes: Axes) -> tuple[float, float]:
 def label_ends(axes: Axes, labels: Sequence[EndLabel], below: float = 1.0) -> None:
     """Write the names of lines beside their ends, nudged apart, with a thin leader.
 
-    The limits of the axes must have been set before; names stand at most `below` mm below the axes.
+    The limits of the axes must be set before; names stand at most `below` mm below the axes.
     """
     if not labels:
         return
@@ -109,7 +109,7 @@ def label_ends(axes: Axes, labels: Sequence[EndLabel], below: float = 1.0) -> No
 
 
 def share_left(row: Sequence[Axes], count: int, label: str) -> None:
-    """Label the y axis at the left, hide the other panels' tick labels and all of the axes beyond the count."""
+    """Label the y axis at the left; hide the other panels' tick labels and all axes beyond the count."""
     row[0].set_ylabel(label)
     for axes in row[1:count]:
         axes.tick_params(labelleft=False)
@@ -118,7 +118,7 @@ def share_left(row: Sequence[Axes], count: int, label: str) -> None:
 
 
 def outer_ticks(axes: Axes, last: float, texts: Mapping[float, str]) -> None:
-    """Set ticks on the x axis with their labels; the outer ones stay inside, clear of the neighbouring panels."""
+    """Set labelled ticks on the x axis; the outer labels stay inside, clear of the next panels."""
     axes.set_xticks(list(texts), list(texts.values()))
     labels = axes.get_xticklabels()
     labels[0].set_horizontalalignment("left")

@@ -20,7 +20,7 @@ MIDDLE = 0.5  # luminance; on a darker cell the number is white
 
 @dataclass(frozen=True)
 class NumberMap:
-    """A map by rows and columns: values that are shaded, NaN where there is none, and the text of each cell."""
+    """A map by rows and columns: values to shade, NaN where there is none, and the text of each cell."""
 
     title: str
     values: Array
@@ -29,7 +29,7 @@ class NumberMap:
 
 @dataclass(frozen=True)
 class MapScale:
-    """How values are shaded: the colours from 0 to the greatest value, and the height of a cell [mm]."""
+    """How values are shaded: the colours from 0 to the greatest, and the height of a cell [mm]."""
 
     colors: str
     greatest: float
@@ -43,7 +43,7 @@ def map_figure(
     labels: tuple[str, str],
     scale: MapScale,
 ) -> Figure:
-    """Draw lines of maps; rows are labelled at the left, columns below the last line, as both axes are by `labels`."""
+    """Draw lines of maps; rows are labelled at the left, columns below the last line, both axes by `labels`."""
     margins = Margins(LEFT, 2.0, GAP, BOTTOM, GAP)
     with house_style():
         figure, grid = axes_grid([(scale.cell * len(rows), GAP)] * len(maps), len(maps[0]), margins)

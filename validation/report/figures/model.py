@@ -1,4 +1,4 @@
-"""The drawing of the two-block model: block, springs, load and unknowns; its lines and words stand in `model.json`."""
+"""The drawing of the two-block model: block, springs, load and unknowns, by `model.json`."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ ARROW = {"arrowstyle": "-|>,head_width=0.12,head_length=0.28", "lw": 0.8, "shrin
 
 
 def model_figure(side: str, pressure: str) -> Figure:
-    """Draw the model with the words of its side and of its load, such as "a = 2 m" and "q = 5 MPa"."""
+    """Draw the model with the words of its side and load, such as "a = 2 m" and "q = 5 MPa"."""
     text = SHAPES.read_text("utf-8")
     for place, words in (("{side}", side), ("{pressure}", pressure), ("{dda}", style_of("dda").color)):
         text = text.replace(place, words)

@@ -1,7 +1,7 @@
 """Histories as small multiples: a panel a case, a row a column, and below them how far the lines are apart.
 
-Lines that lie on one another are drawn once and named together; a history of more swings than can be seen is drawn as
-the band that it fills, with its start below.
+Lines that lie on one another are drawn once and named together; of more swings than can be seen the band is drawn that
+they fill, with their start below.
 """
 
 from __future__ import annotations
@@ -46,9 +46,9 @@ def history_figure(
 ) -> Figure:
     """Draw columns of all solvers, one panel a case, each column so many mm high, or all of them to fill a slide.
 
-    If `apart`, the first column's differences from the reference stand below. They are divided by the static value (by
-    the reference's largest value where there is none) and shown as the largest magnitude in each fortieth of the time,
-    on a logarithmic axis; those of lines that lie on one another are left out.
+    If `apart`, the first column's differences from the reference stand below, over the static value (over the
+    reference's largest value where there is none): the largest magnitude in each fortieth of the time, on a logarithmic
+    axis, without those of lines that lie on one another.
     """
     on_one = twins(panels, columns)
     notes = {name: "".join(f", {other}" for other in others) for name, others in on_one.items()}
@@ -100,7 +100,7 @@ def _broken(title: str, room: float) -> str:
     return textwrap.fill(whole, max(8, int(room / TITLE_LETTER)), break_long_words=False)
 
 
-# ---- lines that lie on one another --------------------------------------------------------------------------------
+# ---- lines that lie on one another ----
 
 
 def twins(panels: HistoryPanels, columns: Sequence[str]) -> Twins:
@@ -122,7 +122,7 @@ def twins(panels: HistoryPanels, columns: Sequence[str]) -> Twins:
 
 
 def _apart(panels: HistoryPanels, columns: Sequence[str], one: str, other: str) -> float | None:
-    """Return how far a solver is off another at most, over the largest value; None where it is drawn without it."""
+    """Return how far a solver is off another at most, over the largest value; None where drawn without it."""
     worst = 0.0
     for panel in panels:
         a = panel.histories.get(one)
@@ -146,24 +146,24 @@ def _apart(panels: HistoryPanels, columns: Sequence[str], one: str, other: str) 
 
 
 def _with_lines(panel: HistoryPanel, on_one: Twins) -> HistoryPanel:
-    """Return a panel with the histories that are drawn; of the reference, which may lie on another, the base."""
+    """Return a panel with the drawn histories; of the reference, which may lie on another, the base."""
     lines = {name: history for name, history in panel.histories.items() if name in on_one}
     like_base = next((name for name, others in on_one.items() if panel.reference in others), None)
     return replace(panel, histories=lines, base=panel.histories.get(panel.reference or ""), like_base=like_base)
 
 
-# ---- long histories -----------------------------------------------------------------------------------------------
+# ---- long histories ----
 
 
 def swings(history: History, column: str) -> int:
-    """Return how often a history swings through its mean, by more than a twentieth of its range to either side."""
+    """Return how often a history swings through its mean, by over a twentieth of its range to either side."""
     values = history.columns[column] - history.columns[column].mean()
     far = values[np.abs(values) > HALF * np.ptp(values)]
     return int(np.count_nonzero(np.diff(np.signbit(far))))
 
 
 def start_of(panels: HistoryPanels, column: str) -> float | None:
-    """Return the time [s] of the start that is drawn by itself, or None where all swings can be seen."""
+    """Return until when [s] the start is drawn by itself, None where all swings can be seen."""
     spans = []
     for panel in panels:
         for history in panel.drawn(column).values():
@@ -177,7 +177,7 @@ def _until(panel: HistoryPanel, span: float) -> HistoryPanel:
     return replace(panel, histories=cut, finer={name: history.until(span) for name, history in panel.finer.items()})
 
 
-# ---- rows ---------------------------------------------------------------------------------------------------------
+# ---- rows ----
 
 
 def _columns(count: int) -> int:
@@ -189,7 +189,7 @@ def _columns(count: int) -> int:
 def _history_row(
     shown: HistoryPanels, panels: HistoryPanels, column: str, notes: Mapping[str, str]
 ) -> list[ChartPanel]:
-    """Return a column of the histories of some panels, in the range that it has in all."""
+    """Return a column of the histories of some panels, in its range in all."""
     low, high = common_range(panels, column)
     name, unit = axis_of(column, panels[0].own if panels else NO_OWN)
     factor, unit = engineering(max(abs(low), abs(high)), unit)
@@ -209,7 +209,7 @@ def _history_row(
 
 
 def _filled(line: ChartLine) -> list[ChartLine]:
-    """Return a line of more swings than can be seen as the band that it fills."""
+    """Return a line of more swings than can be seen as a band."""
     middles, low, high = band(line.x, line.y, BINS)
     shade = line.shade
     edges = [
@@ -220,12 +220,12 @@ def _filled(line: ChartLine) -> list[ChartLine]:
 
 
 def _named(line: ChartLine) -> ChartLine:
-    """Return the end of a line, of which no more is seen than the name."""
+    """Return the end of a line, of which only the name is seen."""
     return ChartLine(line.name, line.x[-1:], line.y[-1:], line.shade, width=0, note=line.note)
 
 
 def _with_all_names(charts: list[ChartPanel]) -> list[ChartPanel]:
-    """Return panels of which the last, beside which the names stand, has those of lines that end in another too."""
+    """Return panels, the last with the names of lines that end in another: names stand beside it."""
     last = charts[-1]
     present = {line.name for line in last.lines}
     missing: dict[str, ChartLine] = {}

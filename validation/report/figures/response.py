@@ -1,4 +1,4 @@
-"""Figures of frequency responses: amplitude and phase of displacement and contact pressure, a line for each answer."""
+"""Figures of frequency responses: amplitude and phase of displacement and contact pressure."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def _line(curve: ResponseCurve, values: Array) -> ChartLine:
 
 
 def save_as(figure: Figure, path: Path) -> Path:
-    """Write a figure as the ending of its path says, .svg, .pdf or .png, the same bytes every time; return the path."""
+    """Write a figure as .svg, .pdf or .png by its path, the same bytes every time; return the path."""
     ending = path.suffix.lower()
     if ending == ".svg":
         return save(figure, path)

@@ -1,4 +1,4 @@
-"""Columns over time: every block a band between its two faces, shaded by the force that it carries; gaps stay white."""
+"""Columns over time: every block a band between its faces, shaded by the force that it carries; gaps stay white."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class SpaceTime:
     Raises
     ------
     ValueError
-        If the arrays do not belong together.
+        The arrays do not belong together.
     """
 
     title: str
@@ -45,7 +45,7 @@ class SpaceTime:
 
     @property
     def magnification(self) -> float:
-        """How many times larger than the column displacements are drawn: 1, 2 or 5 times a power of ten, 1 at least."""
+        """How many times displacements are enlarged: 1, 2 or 5 times a power of ten, at least 1."""
         widest = float(np.max(np.diff(self.displacements, axis=0, prepend=0.0), initial=0.0))
         if widest <= 0:
             return 1.0

@@ -1,4 +1,4 @@
-"""Blocks as HTML: one page each, which needs its figures and, unless it carries it, the style sheet beside it."""
+"""Blocks as HTML: a page each, with its figures and, unless it carries it, the style sheet beside it."""
 
 from __future__ import annotations
 
@@ -50,8 +50,6 @@ def page(
 
     Parameters
     ----------
-    title, blocks
-        What it is called and what is on it.
     file, name, menu
         Its own address, what the site is called and where its other pages are.
     imprint
@@ -59,9 +57,9 @@ def page(
     figure
         The address of a figure's file.
     scenes
-        The pages of scenes, to which figures lead that are of one.
+        The pages of scenes, to which their figures lead.
     template, package
-        What is filled: that of all pages, or one that extends it with parts of its own, which `values` fill.
+        That of all pages, or one that extends it with parts of its own, which `values` fill.
     """
     data = [as_data(block, lambda text: _cleaned(unescaped(text, marked))) for block in blocks]
     anchors = set()
@@ -78,7 +76,7 @@ def page(
 
 
 def anchor(heading: str) -> str:
-    """Return where on its page the first heading with a text stands."""
+    """Return the anchor of the first heading with a text."""
     return re.sub(r"\W+", "-", heading).strip("-").lower()
 
 
@@ -90,7 +88,7 @@ def _spans(columns: Sequence[dict[str, str]]) -> list[tuple[str, int]]:
 
 
 def _cleaned(text: str) -> str:
-    """Return the lines of a text, with the marks of citations."""
+    """Return the lines of a text with marked citations."""
     lines = (CITED.join(readable(part) for part in line.split(CITED)) for line in text.split("\n"))
     return "\n".join(lines)
 
@@ -113,7 +111,7 @@ def _environment(package: str) -> jinja2.Environment:
 
 
 def _finalized(value: Any) -> Any:
-    """Return a value as a page writes it: texts are visible, what is markup already is left."""
+    """Return a value as a page writes it: texts made visible, markup as it is."""
     from markupsafe import Markup
 
     if not isinstance(value, str) or isinstance(value, Markup):
@@ -122,7 +120,7 @@ def _finalized(value: Any) -> Any:
 
 
 def _cited(text: str) -> Markup:
-    """Return a text whose citations are links to the page of references, as author and year."""
+    """Return a text whose citations link to the page of references, as author and year."""
     from markupsafe import Markup, escape
 
     def link(match: re.Match[str]) -> str:
@@ -135,5 +133,5 @@ def _cited(text: str) -> Markup:
 
 
 def static(name: str) -> str:
-    """Return the style sheet or the script of the pages."""
+    """Return a style sheet or script of the pages."""
     return resources.files(__package__).joinpath(name).read_text("utf-8")

@@ -30,7 +30,7 @@ PIXELS_PER_INCH = 200.0
 
 
 def write_document(out: Path, blocks_of: Callable[[Path], Sequence[Block]]) -> Path:
-    """Write a PDF of the blocks that a function returns for a directory of its figures; return the path.
+    """Write a PDF of the blocks that a function returns for a directory of figures; return the path.
 
     Raises
     ------
@@ -51,8 +51,8 @@ def write_document(out: Path, blocks_of: Callable[[Path], Sequence[Block]]) -> P
 def kept_with_next(blocks: Sequence[Block]) -> list[bool]:
     """Return which blocks stay on the page on which the next one begins.
 
-    Paragraphs and rules that lead to a figure or a table do, and a figure before its table; so does all that opens a
-    chapter before its first figure, table or section. Headings always do.
+    Headings do; paragraphs and rules before a figure or table, and a figure before its table; all that opens a chapter
+    before its first figure, table or section.
     """
     is_lead = [isinstance(block, Paragraph) or getattr(block, "tone", "") == "rule" for block in blocks]
     kept = [False] * len(blocks)
@@ -71,7 +71,7 @@ def kept_with_next(blocks: Sequence[Block]) -> list[bool]:
 
 
 def typeset(root: Path, blocks: Sequence[Block]) -> bytes:
-    """Return the PDF; the template and its data are copied beside the figures, which is all typst can read."""
+    """Return the PDF; template and data are copied beside the figures, which is all typst can read."""
     import typst
 
     shutil.copyfile(TEMPLATE, root / "report.typ")
@@ -98,7 +98,7 @@ def typeset(root: Path, blocks: Sequence[Block]) -> bytes:
 
 
 def png_of(svg: Path) -> Path:
-    """Write a PNG of an SVG file beside it, rendered as in the report."""
+    """Write a PNG of an SVG file beside it, as the report renders it."""
     import typst
 
     page = f'#set page(width: auto, height: auto, margin: 2mm)\n#image("{svg.name}")\n'

@@ -1,4 +1,4 @@
-"""Blocks as text of a terminal: lines, each with the style of its first word or of all of it."""
+"""Blocks as lines of a terminal, each with the style of its first word or of all of it."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ NOT_SHOWN = (PageBreak, FigureBlock, References)  # what a terminal cannot show
 
 
 def lines(blocks: Iterable[Block], width: int | None) -> Iterator[StyledLine]:
-    """Yield blocks as lines of a width, an empty line between two of them; a callout stands close to what it is of.
+    """Yield blocks as lines of a width, an empty one between two; a callout stands close to what it is of.
 
     Without a width no line is broken.
     """
@@ -68,7 +68,7 @@ def block_lines(block: Block, width: int | None) -> Iterator[StyledLine]:
 
 
 def table_lines(table: Table, width: int | None) -> Iterator[StyledLine]:
-    """Yield a table: its caption, its heads if it has any, rows in columns, remarks and notes."""
+    """Yield a table: caption, heads if any, rows in columns, remarks and notes."""
     if table.caption:
         yield from wrapped(table.caption, width)
     titles = tuple(f"{column.group} {column.title}".strip() for column in table.columns)
@@ -89,7 +89,7 @@ def table_lines(table: Table, width: int | None) -> Iterator[StyledLine]:
 
 
 def wrapped(text: str, width: int | None, style: str = "") -> Iterator[StyledLine]:
-    """Yield a text in lines of a width, what follows the first one indented."""
+    """Yield a text in lines of a width, indented after the first."""
     if width is None:
         yield text, style
         return

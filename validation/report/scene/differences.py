@@ -17,7 +17,7 @@ DIFFERENCES = {
 
 
 def difference_table(compared: Iterable[ComparisonRecord], name: Callable[[str], str]) -> Table:
-    """Return a row for each pair of a case that some difference is known of, in per cent."""
+    """Return a row for each pair of a case that has a difference, in per cent."""
     rows = []
     for c in compared:
         values = [c["metrics"].get(metric, NOT_REPORTED) for metric in DIFFERENCES]

@@ -20,17 +20,17 @@ def drawing(scene: Scene, width: int | None) -> Iterator[str]:
 
 
 def body_width(slenderness: float) -> int:
-    """Return the characters of a body's width; a tall one has fewer."""
+    """Return the characters of a body across; a tall one has fewer."""
     return INSIDE if slenderness >= 0.5 else max(NARROWEST, round(2 * INSIDE * slenderness))
 
 
 def box_rows(across: int, height: int, beside: list[str]) -> Rows:
-    """Return a box of so many characters and rows, with words beside its first rows."""
+    """Return a box of so many characters and rows, words beside its first rows."""
     edge = (f"  +{'-' * across}+", "")
     inside = [(f"  |{' ' * across}|", text) for text in (*beside, *[""] * (height - len(beside)))]
     return [edge, *inside, edge]
 
 
 def body_height(across: int, slenderness: float) -> int:
-    """Return the rows of a body's inside; a row is as high as two columns are wide."""
+    """Return the rows inside a body; a row is as high as two columns are wide."""
     return min(max(3, round(across / slenderness / 2)), INSIDE // 2)

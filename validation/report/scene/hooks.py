@@ -32,14 +32,14 @@ class Number:
 
 
 class ShowingHooks(Hooks):
-    """The model of a scene in text, the numbers that follow from it, and the limits that it lies beyond."""
+    """The model of a scene in text, its numbers, and the limits that it lies beyond."""
 
     module = "showing"
     no_data: frozenset[str] = frozenset()  # keys that say nothing of such scenes
     first_mode = ""  # name of the number that is the frequency of the first mode
 
     def bodies(self, scene: Scene, varied: Collection[str]) -> Iterator[str]:
-        """Yield what a scene is made of, without the keys that vary between its cases."""
+        """Yield what a scene is made of, without varied keys."""
         yield from ()
 
     def springs(self, scenes: Sequence[Scene], numbers: Numbers) -> str:
@@ -47,18 +47,13 @@ class ShowingHooks(Hooks):
         return ""
 
     def first_frequency(self, scene: Scene, of_run: float | None) -> float | None:
-        """Return the first natural frequency of DDA's model [rad/s]: that of its run, or of a closed form."""
+        """Return the first frequency of DDA's model [rad/s]: that of its run, or of a closed form."""
         return of_run
 
     def drawing(self, scene: Scene, width: int | None) -> tuple[int, Rows]:
         """Return how many characters the body is wide, and the drawing's lines with their words.
 
-        Parameters
-        ----------
-        scene
-            One case.
-        width
-            Characters of a line; None: any number.
+        `width` is that of a line in characters; None: any number.
         """
         tables = [table for name, table in scene.tables().items() if name in scene.kind.tables]
         return 0, [("", described(*entry)) for table in tables for entry in stated(table)]
@@ -77,9 +72,9 @@ class ShowingHooks(Hooks):
             yield "damping", f"C = a0 M + a1 K, a0 = {scene.damping.mass:g} 1/s, a1 = {scene.damping.stiffness:g} s"
 
     def numbers(self, scene: Scene) -> Iterator[Number]:
-        """Yield the derived numbers of one case."""
+        """Yield the derived numbers of a case."""
         yield from ()
 
     def remarks(self, scene: Scene, values: Mapping[str, float]) -> Iterator[str]:
-        """Yield in words the limits that a case lies beyond, by its numbers."""
+        """Yield in words the limits that a case is beyond, by its numbers."""
         yield from ()

@@ -1,4 +1,4 @@
-"""What follows from a scene's parameters before anything runs: the numbers of its kind, over the cases of a sweep."""
+"""What follows from a scene's parameters before anything runs: its kind's numbers, over the cases of a sweep."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Ranges = dict[str, tuple[float, float, Number]]  # name -> least, greatest, and 
 
 
 def cases(scene: Scene) -> list[Scene]:
-    """Return the cases of a scene, of very many `MOST_CASES`, first and last among them."""
+    """Return the cases of a scene; of very many `MOST_CASES`, with first and last."""
     every = scene.expand()
     if len(every) <= MOST_CASES:
         return list(every)
@@ -33,7 +33,7 @@ def cases(scene: Scene) -> list[Scene]:
 
 
 def ranges(numbers_by_case: Sequence[Sequence[Number]]) -> Ranges:
-    """Return each number's range over cases, in the order of the case that has most of them."""
+    """Return each number's range over cases, in the order of the case with most of them."""
     ranges_by_name: Ranges = {}
     for numbers in sorted(numbers_by_case, key=len, reverse=True):
         for number in numbers:
@@ -43,13 +43,13 @@ def ranges(numbers_by_case: Sequence[Sequence[Number]]) -> Ranges:
 
 
 def numbers(scene: Scene) -> list[Number]:
-    """Return the derived numbers of one case, all of them finite."""
+    """Return the derived numbers of a case that are finite."""
     derived = itertools.chain(ShowingHooks.of(scene).numbers(scene), _steps(scene))
     return [number for number in derived if math.isfinite(number.value)]
 
 
 def remarks(scene: Scene, derived: Sequence[Number]) -> list[str]:
-    """Return in words the limits that a case with these numbers lies beyond."""
+    """Return in words the limits that a case with these numbers is beyond."""
     values = {number.name: number.value for number in derived}
     hooks = ShowingHooks.of(scene)
     of_step = (OF_STEPS[alarm.kind] for alarm in coarse_alarms(scene, values.get(hooks.first_mode)))

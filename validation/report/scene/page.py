@@ -28,31 +28,17 @@ SWEPT_VALUES = 6  # of a key that are shown
 
 @dataclass(frozen=True)
 class SceneDescription:
-    """What is known of a scene before anything runs.
+    """What is known of a scene before anything runs."""
 
-    Attributes
-    ----------
-    cases
-        Its cases; of very many a choice.
-    count
-        How many cases it has.
-    varied
-        The values of each key that is varied, as text.
-    solvers
-        What it is run with.
-    gates
-        How many gates the scene states itself.
-    """
-
-    cases: Sequence[Scene]
-    count: int
-    varied: Mapping[str, Sequence[str]]
+    cases: Sequence[Scene]  # of very many a choice
+    count: int  # of all cases
+    varied: Mapping[str, Sequence[str]]  # the values of each varied key, as text
     solvers: Sequence[str]
-    gates: int = 0
+    gates: int = 0  # of its own
 
     @classmethod
     def of(cls, scene: Scene) -> SceneDescription:
-        """Return the description of a scene with its sweep."""
+        """Return the description of a scene and its sweep."""
         varied = {key: [*map(stated_text, values)] for key, values in scene.sweep.items() if key != "mode"}
         return cls(numbers.cases(scene), len(scene.expand()), varied, scene.run.solvers, len(scene.gate))
 
@@ -70,7 +56,7 @@ class SceneDescription:
         return counts
 
     def blocks(self, width: int | None = None) -> Blocks:
-        """Return the model, the numbers with their range over the cases, and the limits that some lie beyond."""
+        """Return the model, the numbers with their range, and the limits that cases lie beyond."""
         sample = len(self.cases)
         caption = ""
         if self.count > 1:
@@ -91,7 +77,7 @@ class SceneDescription:
         ]
 
     def _facts(self) -> Iterator[Line]:
-        """Yield the steps and the scheme of the first case, and what the scene varies and is run with."""
+        """Yield steps and scheme of the first case, what the scene varies and is run with."""
         first = self.cases[0]
         yield from ShowingHooks.of(first).stepping(first)
         if others := list(_other_keys(first)):
@@ -108,7 +94,7 @@ class SceneDescription:
 
 
 def _other_keys(scene: Scene) -> Iterator[str]:
-    """Yield the keys of a scene that are neither in the drawing nor in the lines above."""
+    """Yield the keys that are neither in the drawing nor in the lines above."""
     for place, section in scene.tables().items():
         if place in ("contact", "damping", "run"):
             for name, value, key in stated(section):

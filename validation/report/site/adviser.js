@@ -3,7 +3,7 @@
 const adviser = (() => {
   const { contact_frequency, damping_ratio, dda_frequency, spectral_radius } = damping;
 
-  // ---- validation.advice.search: all values of one parameter that give a function its target ------------------------
+  // ---- validation.advice.search: all values of one parameter that give a function its target ----
 
   const FLAT = 1e-12;  // relative; smaller turns of a function are rounding, not extrema
 
@@ -105,7 +105,7 @@ const adviser = (() => {
     return { solutions, ends, least: by((u, v) => u < v), greatest: by((u, v) => u > v) };
   }
 
-  // ---- validation.advice.advice: dt, gg or delta for a wanted damping ratio of the first axial mode ------------------
+  // ---- validation.advice.advice: dt, gg or delta for a wanted damping ratio of the first axial mode ----
 
   const family = (delta) => (0.5 + delta) ** 2 / 4;  // alpha on the boundary of the paper's (14)
 

@@ -1,7 +1,7 @@
 "use strict";
 // The damping of a step: pure functions of numbers, named as in Python, and what `dda-validate advise damping` says of a block.
 const damping = (() => {
-  // ---- dda.scheme.spectral: one mode under the Newmark scheme, Omega = w dt, X = Omega^2 / (1 + alpha Omega^2) ------
+  // ---- dda.scheme.spectral: one mode under the Newmark scheme, Omega = w dt, X = Omega^2 / (1 + alpha Omega^2) ----
 
   function x(omega, alpha) {
     const inverse = 1 / Math.max(omega, 1);
@@ -62,7 +62,7 @@ const damping = (() => {
     return Math.sqrt(Math.min(at_flip, at_spiral));
   }
 
-  // ---- validation.theory.spectra: the DDA block on two corner springs, mu = 0 ----------------------------------
+  // ---- validation.theory.spectra: the DDA block on two corner springs, mu = 0 ----
 
   // Smaller root of the two-unknown problem of (v, ey): M = diag(m, m h^2/12), K = [[2p, -p h], [-p h, E h w + p h^2/2]]
   function dda_frequency({ width, height, density, young, stiffness }) {

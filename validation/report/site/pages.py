@@ -1,6 +1,6 @@
 """The site of results: the three decisions, chapters, a page for each scene, calculators; written as a whole.
 
-The first page shows each of them by a picture that its own page has, each study with its scenes below it.
+The first page shows each by a picture of its page, each study with its scenes below it.
 """
 
 from __future__ import annotations
@@ -49,15 +49,15 @@ def build(
     Parameters
     ----------
     results
-        The results directory; no solver is called, and studies that this version cannot read are left out.
+        The results directory; studies that this version cannot read are left out.
     out
-        Directory to write: a new or empty one, or an earlier site, which is replaced as a whole.
+        A new or empty directory, or an earlier site, which is replaced as a whole.
     chosen
         The studies that are shown, all by default.
     progress
         Called before each study: how many are finished, of how many, and which is next.
     docs
-        Address of the documentation's folder, such as ".." where the site lies inside it; its pages are linked to.
+        Address of the documentation's folder, to which pages link, such as ".." where the site lies inside it.
 
     Raises
     ------
@@ -83,7 +83,7 @@ def size(place: Path) -> int:
 
 
 class Site:
-    """The pages of one results directory, written into a directory."""
+    """The pages of one results directory."""
 
     def __init__(self, results: Readable, studies: Sequence[str], place: Path, docs: str = "") -> None:
         self.studies = studies
@@ -116,7 +116,7 @@ class Site:
         write(self._place / file, text)
 
     def write_study(self, study: str) -> None:
-        """Write the chapter of a study, and the pages of the scenes that no study before it has."""
+        """Write the chapter of a study, and pages of scenes that no study before it has."""
         page = self._study_pages[study]
         groups = case_groups(self._results, self._results.whole(study, histories=True))
         drawn = {group.name: self._write_scene(group) for group in groups if group.name not in self._scenes}
@@ -139,7 +139,7 @@ class Site:
         self._studies.append(Link(page, self._title(study), purpose, picture, scenes))
 
     def _write_scene(self, group: CaseGroup) -> Blocks:
-        """Write the page of a scene and return what it says, without its gates."""
+        """Write the page of a scene; return what it says, without its gates."""
         page = self._scene_pages[group.name]
         verdicts = [verdict for verdict in self._verdicts if scene_of(verdict["scene"]) == group.name]
         blocks = scene_page(group, self._directory(page))
@@ -152,13 +152,12 @@ class Site:
         return self._place / page.removesuffix(".html")
 
     def _directory(self, page: str) -> Path:
-        """Make the directory of a page's figures."""
         directory = self._figures(page)
         directory.mkdir()
         return directory
 
     def _write_decisions(self) -> Blocks:
-        """Write the page of the three decisions and return what leads there; nothing where no study has any."""
+        """Write the page of the three decisions; return what leads there, or nothing without such a study."""
         front = front_chapter(self._results, self.studies, self._figures(DECISIONS))
         if front is None:
             return []
@@ -178,7 +177,7 @@ class Site:
         return self._manifests[study].get("title") or study
 
     def write_other_pages(self) -> None:
-        """Write the first page, what is verified, the calculators, the sources and what all pages share."""
+        """Write the first page, what is verified, calculators, sources and what pages share."""
         lead = (
             "Blocks on springs, computed by DDA, by finite elements and exactly, judged by gates with a band and a "
             "reason each."
@@ -210,13 +209,13 @@ class Site:
 
 
 def picture_of(page: str, blocks: Blocks) -> str:
-    """Return the address of the first figure of a page; nothing where it has none."""
+    """Return the address of the first figure of a page, or nothing."""
     figures = figures_of(blocks)
     return f"{page.removesuffix('.html')}/{figures[0].file}" if figures else ""
 
 
 def page_names(kind: str, names: Sequence[str]) -> dict[str, str]:
-    """Return a file for each name: safe characters, and no file twice, whatever the letters' case."""
+    """Return a file for each name: safe characters, no file twice, whatever the case of letters."""
     pages = {}
     used = set()
     for name in names:

@@ -10,14 +10,7 @@ from validation.errors import InputError
 def check_place(out: Path, mark: str, what: str) -> None:
     """Refuse a place that cannot be written, or whose files are not those of such a site.
 
-    Parameters
-    ----------
-    out
-        The directory.
-    mark
-        The file that marks an earlier site.
-    what
-        What such a site is called.
+    The file `mark` marks an earlier site, which is called `what`.
     """
     if out.exists() and not out.is_dir():
         raise InputError("must be a directory", field="--out", value=f"the file {out}")

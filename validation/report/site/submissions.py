@@ -43,10 +43,8 @@ def write_site(sets: Sequence[JudgedSet], out: Path, progress: Progress) -> Path
 
     Parameters
     ----------
-    sets
-        The folders of answers.
     out
-        Directory to write: a new or empty one, or an earlier site, which is replaced as a whole.
+        A new or empty directory, or an earlier site, which is replaced as a whole.
     progress
         Told before each page: how many are finished, of how many, and which is next.
 
@@ -84,7 +82,7 @@ def _by_address(judged: JudgedSet) -> tuple[str, ...]:
 
 
 class Site:
-    """The pages of a site: folders of answers by the folder names of their programs."""
+    """The pages of a site: folders of answers by program."""
 
     def __init__(self, programs: Mapping[str, Sequence[JudgedSet]], place: Path) -> None:
         self._programs = programs
@@ -120,7 +118,7 @@ class Site:
         self._write("index.html", f"Answers to the problems of pack {PACK}", blocks)
 
     def program(self, name: str) -> None:
-        """Write the page of a program: all its versions and settings."""
+        """Write the page of a program, all versions and settings."""
         group = self._programs[name]
         blocks = [_links(group), answer_table(group), *reason_blocks(group), stated_table(group)]
         self._write(f"program_{name}.html", group[-1].answers.data.program, blocks)

@@ -1,4 +1,4 @@
 """Adapters of blocks of the package `dda` on contact that opens and slides: in small motion, and turning about.
 
-In come scenes with a block on a unilateral contact; `validation.solvers.dda` chooses among them.
+`validation.solvers.dda` chooses among them.
 """

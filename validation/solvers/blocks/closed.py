@@ -8,7 +8,7 @@ from dataclasses import replace
 import dda
 from validation.scenes.scene import Scene
 
-# A locked corner must have a shear spring; one so soft stands for none and moves no digit of the largest frequency.
+# A locked corner must have a shear spring; one so soft moves no digit of the largest frequency.
 FRICTIONLESS = 1e-12  # of the normal stiffness
 
 
@@ -31,7 +31,7 @@ def load_of(scene: Scene, motion: dda.BaseMotion | None = None) -> dda.Load:
 def closed_model(scene: Scene) -> dda.TwoBlockModel:
     """Return the block of a scene on its base with both corners closed and sticking.
 
-    What has no pressure, such as a block that is thrown, is given one: its impact moves the same unknowns.
+    A block without pressure, such as one that is thrown, is given one: its impact moves the same unknowns.
     """
     b = scene.block
     corners = closed_corners(scene.contact.stiffness, scene.contact.shear)
@@ -57,8 +57,8 @@ def opening_system_frequency(scene: Scene) -> float:
 def rolling_frequency(scene: Scene) -> float:
     """Return the largest frequency of a block that may turn on to any of its edges [rad/s].
 
-    The directions of the springs turn against the block, so that the stiffer of the two acts along both. A pressure and
-    a traction move all six unknowns, as a block that turns does.
+    The springs turn against the block, so that the stiffer one acts along both directions. A pressure and a traction
+    move all six unknowns, as a block that turns does.
     """
     c = scene.contact
     if math.isinf(c.stiffness):

@@ -65,7 +65,6 @@ class OpeningBlock(Prepared):
         return to_run(self.scene, result, {**result.columns, **self._contact(result)})
 
     def _contact(self, result: dda.ContactResult) -> dict[str, Array]:
-        """Return the asked columns of the contacts, which are made when they are asked for."""
         return {name: contact_column(result, name) for name in self.scene.run.columns if name in (*OPENING, PASSES)}
 
     def switches(self) -> tuple[Switch, ...]:
@@ -119,14 +118,7 @@ def record_of_steps(
 ) -> ContactRecord:
     """Return what the contacts of a block did at its steps.
 
-    Parameters
-    ----------
-    scene, result
-        The scene and the history of its contacts.
-    impulse
-        Of all contacts from t = 0 on [N s], shape (steps,).
-    base
-        The contacts of the base, by which opening is measured.
+    The impulse is that of all contacts from t = 0 on [N s], shape (steps,); opening is measured by those of the base.
     """
     return opened.record(
         scene,

@@ -29,8 +29,7 @@ if TYPE_CHECKING:
 def bars_of(scene: Scene) -> tuple[BarsProblem, Array]:
     """Return the bars of a scene, and the heights of their feet [m].
 
-    Blocks whose faces move alike are one bar where their layers are of one material and start alike, and bonded bars
-    where they are not.
+    Blocks whose faces move alike are one bar where their layers are of one material and start alike, else bonded bars.
     """
     from fem_reference.events.bars_model import BarsProblem
 
@@ -126,7 +125,6 @@ class BarsOfColumn(Motion):
         return [self._values(name, t) for name in self.names]
 
     def _values(self, name: str, t: Array) -> Array:
-        """Return a column of the history."""
         if name == DISPLACEMENT:
             return self.motion.point(len(self.feet) - 1, self.problem.bars[-1].length, t).displacement
         if name == PRESSURE:

@@ -99,7 +99,7 @@ class ContactColumn(BlockColumn):
         raise NotReported("dda: a column whose contacts open or slip has no frequency response")
 
     def switches(self) -> tuple[Switch, ...]:
-        """Return the changes of the contacts' states between the steps of the history that was run."""
+        """Return the switches between the steps of the history that was run."""
         result = completed(self.result)
         slips = self.column.law == "frictional"
         contact_states = {}

@@ -125,7 +125,7 @@ class ContactLineColumn(LineColumn):
         raise NotReported("fem: a column whose contacts open or slip has no frequency response")
 
     def switches(self) -> tuple[Switch, ...]:
-        """Return the changes of the contacts' states between the steps of the history that was run."""
+        """Return the switches between the steps of the history that was run."""
         result = completed(self.result)
         slips = self.column.law == "frictional"
         contacts = zip(self.column.contacts, result.states, strict=True)
@@ -133,7 +133,7 @@ class ContactLineColumn(LineColumn):
         return switches_between_steps(states, result.time, slips)
 
     def contact_record(self) -> ContactRecord:
-        """Return what the contacts did in the history that was run; the elements report no energies."""
+        """Return what the contacts did in the history that was run; there are no energies."""
         result = completed(self.result)
         column = self.column
         masses = np.array([stratum.density * stratum.thickness for stratum in column.ground.strata])

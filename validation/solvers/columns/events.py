@@ -43,10 +43,7 @@ def blocks_of(section: ColumnSection) -> tuple[ColumnBlock, ...]:
 def joints_of(section: ColumnSection) -> tuple[ColumnJoint | None, ...]:
     """Return the contact at the foot of each block, None where faces move alike.
 
-    Raises
-    ------
-    ValueError
-        If a contact is not where two blocks, or block and base, meet.
+    A contact that is not where two blocks, or block and base, meet is a ValueError.
     """
     from fem_reference.events.column_model import ColumnJoint
 
@@ -149,7 +146,7 @@ class ColumnEventMotion(Motion):
         return np.asarray((1 - share) * faces[0][block] + share * faces[1][block])
 
     def _block_at(self, height: float) -> tuple[int, float]:
-        """Return the block at a height and the share of its height below; of two that meet there, the lower one."""
+        """Return the block at a height, of two the lower one, and the share of its height below."""
         feet = np.array(self.section.faces)
         near = np.flatnonzero(np.abs(feet - height) <= NEAR * self.section.height)
         if len(near):

@@ -1,4 +1,4 @@
-"""The blocks themselves, by `dda`."""
+"""Blocks in the plane by `dda`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from validation.solvers.plane.modelled import PlaneModelled
 
 
 class PlaneBlocks(PlaneModelled):
-    """The blocks, by `dda`."""
+    """The blocks themselves."""
 
     def built(self) -> dda.GluedBlocks:
         """Return the blocks."""
@@ -35,7 +35,7 @@ class PlaneBlocks(PlaneModelled):
         return dda.highest_frequency(self.model.system)
 
     def stress_error(self) -> float:
-        """Return the largest error of a stress component at rest over the largest component of the loads' stress."""
+        """Return the error of the blocks' stress."""
         error = abs(self.stresses() - np.array(self.plane.stress))
         return float(np.max(error) / np.max(np.abs(self.plane.stress)))
 
@@ -58,13 +58,7 @@ def first_contact(
 ) -> dda.FirstContact | None:
     """Return the first contact of two polygons in uniform motion as `dda` has it, None where there is none.
 
-    Parameters
-    ----------
-    outlines
-        Corners about their own origins [m].
-    motions
-        Place [m], angle [rad], velocity [m/s] and spin [rad/s] of these.
-    until
-        Last instant that is looked at [s].
+    Outlines are corners about their own origins [m]; a motion is place [m], angle [rad], velocity [m/s] and spin
+    [rad/s]; `until` is the last instant that is looked at [s].
     """
     return dda.first_contact(outlines[0], outlines[1], motions[0], motions[1], until)

@@ -16,7 +16,7 @@ ELEMENTS = 8  # along the shorter side, if the scene does not say: a slender can
 
 
 class PlaneMesh(PlaneModelled):
-    """The elastic body of the blocks' outline, by `fem`."""
+    """The elastic body as a mesh."""
 
     def built(self) -> PlaneModel:
         """Return the elements."""
@@ -27,7 +27,7 @@ class PlaneMesh(PlaneModelled):
         return float(self.model.highest_frequency())
 
     def stress_error(self) -> float:
-        """Return the largest error of a stress component at rest over the largest component of the loads' stress."""
+        """Return the error of the mesh's stress."""
         return float(self.model.stress_error())
 
 

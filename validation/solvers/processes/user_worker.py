@@ -1,8 +1,8 @@
 """The process in which a user's solver runs, see the command of `validation.solvers.user.UserSolver`.
 
-A request holds a scene, an answer the history that the solver returned, its static solution and modes where it has
-them, or "raised" with the error and "at" with its place. A request of "parts" is answered with those that it has, one
-of "about" with what the solver says of itself.
+A request holds a scene, an answer the history that the solver returned, with static solution and modes where it has
+them, or the error "raised" and its place "at". A request of "parts" is answered with those that it has, one of "about"
+with what the solver says of itself.
 """
 
 from __future__ import annotations
@@ -43,13 +43,7 @@ def load(name: str) -> Any:
 
 
 def columns_of(value: Any) -> dict[str, Any]:
-    """Return the columns of whatever a solver returned.
-
-    Raises
-    ------
-    TypeError
-        It is none of the forms that are understood.
-    """
+    """Return the columns of whatever a solver returned; a TypeError if it is none of the forms that are understood."""
     if isinstance(value, Run):
         value = value.history
     if isinstance(value, History):

@@ -23,14 +23,14 @@ WAITING_LINES = 16  # of what a worker writes and nobody has asked for
 PIECE_SIZE = 2**16  # bytes that are kept of standard error
 EXIT_TIMEOUT = 0.5  # s for a process that has closed its output
 TAIL_LINES = 3  # lines of a dead worker's standard error that are worth telling
-ERROR_LINE = re.compile(r"[\w.]+(Error|Exception)\b.*")  # the line of an error, which a launcher buries under its own
+ERROR_LINE = re.compile(r"[\w.]+(Error|Exception)\b.*")  # which a launcher buries under its own
 LAUNCHER_LINE = re.compile(
     r"[-=*]+|\[[^\]]*:\d+\] .*(help message|help / error messages).*"
 )  # a launcher's rules and advice
 
 
 class WorkerDied(RuntimeError):
-    """The worker ended before it answered; the text holds the last lines of its standard error."""
+    """The worker ended before it answered; the text has the last lines of its standard error."""
 
 
 class WorkerHangs(RuntimeError):
@@ -38,7 +38,7 @@ class WorkerHangs(RuntimeError):
 
 
 def stderr_tail(text: str) -> str:
-    """Return why a process ended: the errors that its standard error names, else its last lines that say something."""
+    """Return why a process ended: the errors in its standard error, else its last lines that say something."""
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     error_lines = list(dict.fromkeys(line for line in lines if ERROR_LINE.fullmatch(line)))  # two ranks say the same
     other_lines = [line for line in lines if not LAUNCHER_LINE.fullmatch(line)]
@@ -49,7 +49,7 @@ class Worker:
     """A process in a session of its own that answers requests until this one ends, however it ends.
 
     Its standard input closes with this process, which `serve` takes for the end. Threads read what it writes, so that
-    it never waits for a reader, and a reader of ours never for it.
+    neither side waits for the other.
     """
 
     def __init__(self, command: Sequence[str], environment: Mapping[str, str]) -> None:
@@ -81,7 +81,7 @@ class Worker:
     def ask(self, request: Mapping[str, Any], limit: float | None = None) -> dict[str, Any]:
         """Send a request and wait for its answer, at most `limit` seconds.
 
-        What carries the number of another request is not taken: a process that has forked answers twice.
+        An answer to another request is not taken: a process that has forked answers twice.
 
         Raises
         ------
@@ -109,7 +109,7 @@ class Worker:
                 return answer
 
     def _send(self, data: bytes) -> None:
-        """Send a request, in a thread of its own: a worker that hangs may not read what a pipe cannot hold."""
+        """Send a request, in a thread: a worker that hangs may not read what a pipe cannot hold."""
         with contextlib.suppress(OSError, ValueError):  # nobody reads any more
             while data:
                 data = data[self._process.stdin.write(data) :]
@@ -178,14 +178,14 @@ def ask(
         raise
 
 
-# ---- on the other side ----------------------------------------------------------------------------------------------
+# ---- on the other side ----
 
 
 def serve(answer: Callable[[dict[str, Any]], Mapping[str, Any]]) -> None:
     """Answer requests from standard input until it ends; what else is printed goes to standard error.
 
-    Every answer carries its request's number. A copy of this process that `answer` has forked answers nothing. The
-    group of this process ends with it: after its exit hooks, or `GRACE` seconds after the end of its input.
+    Every answer carries its request's number; a copy that `answer` has forked answers nothing. The group of this
+    process ends with it: after its exit hooks, or `GRACE` seconds after the end of its input.
     """
     requests: queue.SimpleQueue[str] = queue.SimpleQueue()
     _in_thread(_take_requests, os.fdopen(os.dup(0)), requests)

@@ -6,15 +6,9 @@ from __future__ import annotations
 def impact_statistics(alpha: float, delta: float, gg: float, omega: float) -> tuple[float, float, float, float]:
     """Return mean, least, greatest and mean square of the restitution of a penalty contact over its phase.
 
-    A mass without load under Newmark's scheme. The phase is how far the first predictor in contact lies below the
-    spring's end, over V dt: uniform from 0 to gg, as that step covers gg V dt and starts above the spring.
-
-    Parameters
-    ----------
-    alpha, delta, gg
-        The scheme and its discount.
-    omega
-        sqrt(k / m) dt, `math.inf` for a rigid contact.
+    A mass without load under Newmark's scheme, omega = sqrt(k / m) dt, `math.inf` for a rigid contact. The phase is how
+    far the first predictor in contact lies below the spring's end, over V dt: uniform from 0 to gg, as that step covers
+    gg V dt and starts above the spring.
 
     Raises
     ------
@@ -28,7 +22,7 @@ def impact_statistics(alpha: float, delta: float, gg: float, omega: float) -> tu
 
 
 def impact_restitution(alpha: float, delta: float, gg: float, omega: float, phase: float) -> float:
-    """Return the restitution of one phase; see `impact_statistics`."""
+    """Return the restitution of one phase, see `impact_statistics`."""
     from fem_reference.events.restitution import ContactScheme, restitution
 
     return restitution(ContactScheme(alpha, delta, gg), omega, phase)

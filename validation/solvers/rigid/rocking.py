@@ -15,8 +15,8 @@ class Rocking:
     """Motion of a rigid block that rocks."""
 
     time: Array  # instants [s], shape (times,)
-    rotation: Array  # rotation, positive about the right corner and towards +x [rad], shape (times,)
-    rate: Array  # its rate [rad/s], shape (times,)
+    rotation: Array  # positive about the right corner and towards +x [rad], shape (times,)
+    rate: Array  # of the rotation [rad/s], shape (times,)
     impacts: tuple[float, ...]  # instants at which it came down on the other corner [s]
     overturned: bool  # whether it fell on its side
 
@@ -55,18 +55,10 @@ def rocking(
     restitution: float | None = None,
     gravity: float = 9.81,
 ) -> Rocking:
-    """Return the rocking of a block that is released at rest from a tilt [rad].
+    """Return the rocking of a block of a width and a height [m] that is released at rest from a tilt [rad], g in m/s2.
 
-    Parameters
-    ----------
-    width, height, gravity
-        Of the block [m], and g [m/s2].
-    tilt
-        Rotation at t = 0 [rad].
-    time
-        Instants from 0 on that are reported [s], shape (times,); those after a fall are left out.
-    restitution
-        Rate after over rate before an impact [-]; None: Housner's, which keeps the moment of momentum.
+    Instants from 0 on are reported [s], shape (times,), without those after a fall. The restitution is the rate after
+    over the rate before an impact [-]; None: Housner's, which keeps the moment of momentum.
 
     Raises
     ------

@@ -24,12 +24,12 @@ class Slide:
     time: Array  # instants [s], shape (times,)
     slide: Array  # slide towards +x, down a slope [m], shape (times,)
     velocity: Array  # its rate [m/s], shape (times,)
-    slip: float  # length of the way until the last instant, both directions added [m]
+    slip: float  # length of the way until the last instant, in both directions [m]
     switches: tuple[tuple[float, int], ...]  # instants [s]; 1 and -1: it begins to slide towards +x or -x, 0: it sticks
 
 
 def rigid_slide(scene: Scene, smooth: bool = False) -> Slide:
-    """Return how a rigid mass in the place of a scene's block slides, at the end of each step; see `rigid_motion`."""
+    """Return how the mass of `rigid_motion` slides, at the end of each step."""
     return _reported(rigid_motion(scene, smooth), scene.time.step * np.arange(1.0, scene.time.steps + 1))
 
 
@@ -69,7 +69,7 @@ def rigid_motion(scene: Scene, smooth: bool = False) -> SlidingMotion:
 
 @functools.lru_cache(maxsize=4)
 def _motion(block: SlidingBlock, base: tuple[Segment, ...], end: float) -> SlidingMotion:
-    """Return the motion of a rigid mass, kept since scenes that differ in their springs only have one."""
+    """Return the motion of a rigid mass, one for scenes that differ in springs only."""
     from fem_reference.exact.sliding_block import solve
 
     return solve(block, base, end)

@@ -1,7 +1,7 @@
 """The two-block model in sixty-digit arithmetic as an ordinary solver, `dda-60`.
 
-It takes the doubles of a scene as exact. Its histories are rounded to doubles at the end and cost milliseconds to
-seconds.
+It takes the doubles of a scene as exact and rounds its histories to doubles at the end; they cost up to seconds.
+
 """
 
 from __future__ import annotations

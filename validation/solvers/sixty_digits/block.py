@@ -2,7 +2,7 @@ r"""The two-block model in sixty-digit arithmetic, by another route than the pac
 
 The matrices are those of (v, ex, ey) about the centroid, since a pressure on all of the top of an upright rectangle
 moves no other unknown, built from the doubles of the scene in ball arithmetic (python-flint). A step is given by its
-trace and its determinant, which here are matrices in X = dt^2 M^-1 K, as all that stands in the scheme is:
+trace and its determinant, which like all of the scheme are matrices in X = dt^2 M^-1 K:
 
     D(n+1) = trace D(n) - det D(n-1) + (1 + gg) / 2 (1 + alpha X)^-1 dt^2 M^-1 F,    H = X (1 + alpha X)^-1
     trace = 1 - H/2 + gg (1 - delta H),    det = gg (1 + (1/2 - delta) H)

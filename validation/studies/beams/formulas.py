@@ -33,7 +33,7 @@ def blocks(case: Scene) -> Metrics:
 
 
 def ratios(case: Scene, row: Row, elements: Row) -> dict[str, float]:
-    """Return what a solver's static displacement and frequencies are over those of elements on the same outline."""
+    """Return the ratios of static displacement and frequencies to those of elements on the same outline."""
     ratios: dict[str, float] = {}
     for metric, value in row.metrics.items():
         other = elements.metrics.get(metric)
@@ -43,7 +43,7 @@ def ratios(case: Scene, row: Row, elements: Row) -> dict[str, float]:
 
 
 def orders(levels: Sequence[tuple[Scene, Row, Row]]) -> Metrics:
-    """Return the order of the last halving of the block, by metric."""
+    """Return the order of the last halving, by metric."""
     coarse, fine = starmap(ratios, levels[-2:])
     return {metric: float(np.log2((coarse[metric] - 1) / (ratio - 1))) for metric, ratio in fine.items()}
 
@@ -68,8 +68,8 @@ def bending_ratio(squares: int, glue: float) -> float:
 def tip_of_squares(case: Scene) -> Band:
     """Return bounds of the end's displacement of a cantilever of squares that are glued with finite stiffness [m].
 
-    Rows turn against each other in their joints, which lie at j h: the integral of (L - z)^2 is a sum, without the
-    clamp from below and with it from above.
+    Rows turn against each other in joints at j h: the integral of (L - z)^2 is a sum, without the clamp from below and
+    with it from above.
     """
     shear, bending, rows = _parts(case)
     places = np.arange(rows + 1) / rows
@@ -85,7 +85,7 @@ def locked_tip(case: Scene) -> Band:
 
 
 def _parts(case: Scene) -> tuple[float, float, int]:
-    """Return the shear and the bending of the end of a cantilever of squares [m], and the number of its rows."""
+    """Return shear and bending of the end of a cantilever of squares [m], and its number of rows."""
     plane = case.table(PlaneSection)
     across, rows = plane.subdivide or (1, 1)
     width, length = plane.rectangle or (1.0, 1.0)

@@ -1,7 +1,7 @@
 """The study `boxes`: boxes on a ground by `dda` beside `rigid-exact`, and what springs and steps may add.
 
-A box has two corners on what is below it, each on a spring p. Where a scene asks for rigid contact the springs and the
-steps are DDA's own; a history keeps the rows alone.
+A box has two corners on what is below it, each on a spring p. Where a scene asks for rigid contact, springs and steps
+are DDA's own; a history keeps the rows alone.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from validation.suite.bands import Band
 
 
 def masses(case: Scene) -> list[float]:
-    """Return the masses of the boxes, from the lowest up [kg]."""
+    """Return the masses of the boxes from below [kg]."""
     return [block.mass for block in moving_blocks(case)]
 
 
 def slide(case: Scene, own: History, exact: History) -> Metrics:
-    """Return how far the box is ahead at the end [m], and its normal force over the exact one, less one."""
+    """Return the box's lead at the end [m], and its normal force over the exact one, less one."""
     force = "box-ground.normal"
     return {
         "lead": own.columns["box.x"][-1] - exact.columns["box.x"][-1],
@@ -50,7 +50,7 @@ def stack(case: Scene, own: History, exact: History) -> Metrics:
 
 
 def land(case: Scene, own: History, exact: History) -> Metrics:
-    """Return the greatest force over the exact one, less one, and the size of that."""
+    """Return the greatest force over the exact one, less one, and its size."""
     force = "box-ground.normal"
     error = float(np.max(own.columns[force]) / np.max(exact.columns[force]) - 1)
     return {"peak force": error, "peak size": abs(error)}

@@ -30,7 +30,7 @@ def torn_and_loaded(table: StudyTable, directory: Path) -> Blocks:
 
 
 def over_time(table: StudyTable, directory: Path, name: str) -> Blocks:
-    """Return the picture of columns over time, of the first case of each query that a solver ran."""
+    """Return the picture of columns over time: of each query the first case that a solver ran."""
     described = PAGE.described("stacks", name)
     drawn = []
     for query in described["drawn"]:
@@ -43,7 +43,7 @@ def over_time(table: StudyTable, directory: Path, name: str) -> Blocks:
 
 
 def space_time(scene: Scene, history: History, title: str) -> SpaceTime:
-    """Return the blocks of a column whose middles are observed first, and all of whose contacts follow."""
+    """Return the blocks of a column which observes their middles first, then all its contacts."""
     column = column_of(scene)
     faces = np.array(column.faces)
     blocks = len(faces) - 1

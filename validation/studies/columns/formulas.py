@@ -47,11 +47,11 @@ def jointed() -> Iterator[Scene]:
         yield case.model_copy(update={"name": f"{JOINT}-{strength:g}"})
 
 
-# ---- rows that are computed from finished cases ---------------------------------------------------------------------
+# ---- rows that are computed from finished cases ----
 
 
 def samples(scene: Scene, history: History) -> Metrics:
-    """Return the values of a history that were printed, each named as ``displacement_1 at 0.02 s``."""
+    """Return the values of a history that were printed, as ``displacement_1 at 0.02 s``."""
     values = {}
     for name in printed("samples")[scene.name]:
         column, _, time = name.removesuffix(" s").partition(" at ")
@@ -71,10 +71,9 @@ def printed(row: str) -> dict[str, dict[str, Any]]:
 
 
 def order(runs: Sequence[tuple[Scene, History, History]]) -> Metrics:
-    """Return the order in the time step, fitted to the displacement's error of the blocks over the whole history."""
+    """Return the order in the time step of the blocks' displacement error over the whole history."""
     errors = []
     for _, history, exact in runs:
-        # The largest error of the blocks' displacements over the largest displacement.
         names = [name for name in exact.columns if name.startswith("displacement")]
         differences = [np.max(np.abs(history.columns[name] - exact.columns[name])) for name in names]
         errors.append(float(max(differences) / max(np.max(np.abs(exact.columns[name])) for name in names)))
@@ -99,8 +98,8 @@ def pieces(scene: Scene, history: History) -> Metrics:
 def parts(scene: Scene, history: History) -> Metrics:
     """Return transmitted, reflected and absorbed parts of the energy of a sine at a joint, as square roots.
 
-    Above the joint there is the transmitted wave alone, below it the incident one, which is known, and the reflected
-    one. They are measured over one period in which no wave from the top has arrived.
+    Above the joint is the transmitted wave alone, below it the incident one, which is known, and the reflected one.
+    They are measured over one period before any wave from the top has arrived.
     """
     below, above = column_of(scene).heights
     drive = scene.input
@@ -132,7 +131,7 @@ def rest(scene: Scene, history: History) -> Metrics:
 
 
 def settlement(scene: Scene) -> float:
-    """Return the displacement of the top of a stack of rigid blocks at rest [m]."""
+    """Return the top displacement of a stack of rigid blocks at rest [m]."""
     column = column_of(scene)
     weights = [
         layer.density * column.gravity * layer.thickness / layer.blocks
@@ -144,7 +143,7 @@ def settlement(scene: Scene) -> float:
 
 
 def residual(scene: Scene, history: History) -> Metrics:
-    """Return the slips that remain of the lowest and the highest joint [m]."""
+    """Return the remaining slips of the lowest and the highest joint [m]."""
     return {"lowest": history.columns["slip_1"][-1], "highest": history.columns["slip_5"][-1]}
 
 
@@ -166,7 +165,7 @@ def blocks_of_pieces(case: Scene) -> Metrics:
 
 
 def settling(case: Scene) -> Metrics:
-    """Return the time in which the lowest vibration of a stack falls to a thousandth, its contacts closed [s]."""
+    """Return the time in which a stack's lowest vibration falls to a thousandth, contacts closed [s]."""
     column = column_of(case)
     layer = column.layer[0]
     mass = layer.density * layer.thickness / layer.blocks
@@ -186,7 +185,7 @@ def proven_solves(case: Scene) -> Band:
 
 
 def scenes() -> tuple[str | Scene, ...]:
-    """Return the scenes: those of files, and joints of every strength."""
+    """Return the scenes of files, and joints of every strength."""
     return (
         "columns-drop-average",
         "columns-drop-constant",

@@ -1,4 +1,4 @@
-"""What a step damps, in closed form: of a scene, over its time step, and the step that a ratio asks for."""
+"""What a step damps, in closed form: over the time step of a scene, and the step for a ratio."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ POINTS = 100  # a ratio changes smoothly with the step; where it is crossed is s
 
 
 def timed(scene: Scene, **values: Any) -> Scene:
-    """Return a scene with other values in its table of time, which are known to be allowed; weights are Newmark's."""
+    """Return a scene with other values of time, known to be allowed; weights are Newmark's."""
     weights = {name: values.pop(name) for name in ("alpha", "delta") if name in values}
     if weights:
         values |= {"scheme": "newmark", "rho_inf": None, "split": None}
@@ -48,19 +48,19 @@ def ratio_of(scene: Scene) -> float:
 
 
 def first_damping(scene: Scene) -> float:
-    """Return xi of the DDA block's first axial mode [-]: at least 1 where it creeps, NaN where a root is negative."""
+    """Return xi of the DDA block's first axial mode [-]: at least 1 where it creeps, NaN for a negative root."""
     return float(over_steps(scene, np.array([scene.time.step]))[0])
 
 
 def over_steps(scene: Scene, steps: Array) -> Array:
-    """Return xi of the first axial mode over time steps [s]; a discount stated as a rate stays one."""
+    """Return xi of the first axial mode over time steps [s]; a discount that is a rate stays one."""
     frequency = spectra.dda_frequency(scene)
     stepping = Stepping.of(scene)
     return np.array([stepping.at(float(step)).damping_ratio(frequency * float(step)) for step in steps])
 
 
 def steps_for(scene: Scene, ratios: Iterable[float]) -> list[float | None]:
-    """Return the least time step [s] that damps the first axial mode by each ratio, None where none does."""
+    """Return the least time step [s] that damps the first axial mode by each ratio, or None."""
     from scipy.optimize import brentq
 
     steps = np.geomspace(LOWEST, HIGHEST, POINTS) / spectra.dda_frequency(scene)
@@ -76,7 +76,7 @@ def steps_for(scene: Scene, ratios: Iterable[float]) -> list[float | None]:
 
 
 def most_damped(scene: Scene) -> float:
-    """Return w dt at which a step of (1/2, 1) damps the first axial mode most, by its ratio."""
+    """Return w dt at which (1/2, 1) damps the first axial mode most, by its ratio."""
     frequency = spectra.dda_frequency(scene)
     turns = np.linspace(LOWEST, 4.0, 4 * POINTS)
     return float(turns[np.nanargmax(over_steps(scene, turns / frequency))])
@@ -88,7 +88,7 @@ def rate_for(scene: Scene, ratio: float) -> float:
 
 
 def overdamped_below(scene: Scene) -> float | None:
-    """Return the step [s] below which the discount per step overdamps the first axial mode; None without one."""
+    """Return the step [s] below which a discount per step overdamps the first axial mode, or None."""
     from scipy.optimize import brentq
 
     if scene.time.discount >= 1 or scene.time.gg_rate is not None:
@@ -104,7 +104,7 @@ def contact_radius(scene: Scene) -> float:
 
 
 def spring_share(scene: Scene) -> float:
-    """Return how far the springs deflect at rest over what the block itself shortens by to its centroid [1].
+    """Return how far the springs deflect at rest over the block's own shortening to its centroid [1].
 
     (a q / 2p) / (h q / 2E') = (w / h) E' / p: a rule on p alone holds for one slenderness.
     """
@@ -116,7 +116,7 @@ def spring_share(scene: Scene) -> float:
 def sign_change_step(scene: Scene) -> float:
     """Return the step [s] beyond which (1/2, 1) has two negative roots for the contact mode: 4 / w.
 
-    The contact force then changes its sign in each step.
+    The contact force then changes sign in each step.
     """
     return 4 / spectra.contact_frequency(scene)
 

@@ -1,4 +1,4 @@
-"""Damping of DDA, finite elements and bar in every scene of the core study: compared, and judged by gates.
+"""Damping of DDA, finite elements and bar in every scene of the core study.
 
 A derived row `damping` of each case holds, for every solver, the distance of its one-step operator from the scheme's
 closed form at the operator's own frequency, and that of the ratio measured on its history from the operator's.
@@ -28,7 +28,7 @@ def compared_cases() -> Iterator[Scene]:
 
 
 def solvers(scene: Scene) -> list[str]:
-    """Return the solvers of a scene whose damping is compared."""
+    """Return the solvers whose damping is compared."""
     bar = scene.block.poisson == 0 and scene.fem.foundation == "distributed"
     return [name for name in SOLVERS if name in scene.run.solvers and (bar or name != "bar")]
 
@@ -43,7 +43,7 @@ def derived() -> DerivedRows:
 
 
 def compare(finished: Finished, scene: Scene) -> Metrics:
-    """Return the distances of every solver, and the largest of each kind."""
+    """Return the distances of all solvers, and the largest of each kind."""
     rows = {solver: finished.rows[scene.name, solver] for solver in solvers(scene)}
     operator = {f"{solver}.operator": operator_distance(scene, row) for solver, row in rows.items()}
     history = {f"{solver}.history": history_distance(row) for solver, row in rows.items()}
@@ -57,7 +57,7 @@ def _worst(values: Metrics) -> Value:
 
 
 def operator_distance(scene: Scene, row: Row) -> Value:
-    """Distance of spectral radius and damping ratio of the first axial mode from the closed form at its frequency."""
+    """Distance of the first mode's spectral radius and damping ratio from the closed form at its frequency."""
     w, radius, xi = (row.metrics.get(f"mode1.{part}") for part in ("frequency", "spectral_radius", "damping"))
     if not (isinstance(w, float) and isinstance(radius, float)):
         return "not reported"
@@ -69,7 +69,7 @@ def operator_distance(scene: Scene, row: Row) -> Value:
 
 
 def history_distance(row: Row) -> Value:
-    """Distance of the damping ratio measured on the history from the operator's."""
+    """Distance of the history's damping ratio from the operator's."""
     measured = row.metrics.get("mode1.measured_damping")
     xi = row.metrics.get("mode1.damping")
     return abs(measured - xi) if isinstance(measured, float) and isinstance(xi, float) else "undefined"

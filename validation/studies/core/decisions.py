@@ -49,12 +49,12 @@ def paper() -> Scene:
 
 
 def at_rate() -> Scene:
-    """Return the paper's block under a discount that is held as the rate of the rule."""
+    """Return the paper's block under a discount held as the rate of the rule."""
     base = closed.average(paper())
     return closed.timed(base, gg_rate=closed.rate_for(base, TARGET))
 
 
-# ---- rows -----------------------------------------------------------------------------------------------------------
+# ---- rows ----
 
 
 def springs(case: Scene) -> Metrics:
@@ -70,7 +70,7 @@ def springs(case: Scene) -> Metrics:
 
 
 def first_peak(case: Scene, dda: Row, bar: Row) -> Metrics:
-    """Return how far DDA's first peak of the pressure is above the bar's, its tension [Pa], whether it rests right."""
+    """Return how far DDA's first pressure peak is above the bar's, its tension [Pa], whether it rests right."""
     peak, exact = (or_nan(row.metrics.get("pressure.peak")) for row in (dda, bar))
     least, at_rest = (or_nan(dda.metrics.get(f"pressure.{name}")) for name in ("minimum", "static"))
     load = case.load.pressure
@@ -140,7 +140,7 @@ def _held(step: float, _: Finished) -> Metrics:
     return {"damping": closed.first_damping(scene), "turn": spectra.dda_frequency(scene) * step}
 
 
-# ---- curves ---------------------------------------------------------------------------------------------------------
+# ---- curves ----
 
 
 def curves() -> Mapping[str, Any]:
@@ -149,7 +149,7 @@ def curves() -> Mapping[str, Any]:
 
 
 def _over_steps() -> Iterator[Mapping[str, Any]]:
-    """Yield the curves of three charts: of the paper's block, of its springs, of discounts."""
+    """Yield the curves of three charts: of the paper's block, its springs, discounts."""
     grid = np.geomspace(1e-5, 2e-2, POINTS)
     yield _curve("first", "DDA", np.geomspace(5e-5, 2e-2, FIRST_POINTS), paper())
     for ratio in RATIOS:
@@ -180,5 +180,5 @@ def _over_springs() -> Iterator[Mapping[str, Any]]:
 
 
 def _listed(values: Any) -> list[float | None]:
-    """Return numbers as a list, to as many digits as a chart shows, None where there is none."""
+    """Return numbers as a list, to the digits of a chart, None where there is none."""
     return [float(f"{value:.{DIGITS}g}") if np.isfinite(value) else None for value in values]

@@ -24,7 +24,7 @@ from validation.theory.spectra import elements_per_front as elements_per_front
 
 
 def static_displacement(case: Scene) -> Band:
-    """Static equilibrium of the block, to the conditioning of its system."""
+    """Static equilibrium, to the conditioning of the system."""
     return near(statics.static_displacement(case), 1e4 * spectra.EPS)
 
 
@@ -70,7 +70,7 @@ def damping_of_the_bar(case: Scene) -> Band | None:
 
 
 def _damping(case: Scene, frequency: float) -> Band | None:
-    """Damping ratio of one step at a frequency; a mode whose roots are real has none."""
+    """Damping ratio of one step at a frequency; a mode of real roots has none."""
     if abs(spectra.roots(case, frequency)[0].imag) < 1e-6:
         return None
     value = spectra.damping_ratio(case, frequency)
@@ -78,12 +78,12 @@ def _damping(case: Scene, frequency: float) -> Band | None:
 
 
 def damping_of_the_history(case: Scene) -> Band:
-    """Damping ratio that the displacement of the block shows."""
+    """Damping ratio of the displacement of the block."""
     return about(spectra.damping_ratio(case, spectra.dda_frequency(case)), 1e-6)
 
 
 def dispersion(case: Scene) -> Bands | None:
-    """Mesh error of weakly damped waves, which is that of the elements' dispersion."""
+    """Mesh error of weakly damped waves, which is the elements' dispersion."""
     if case.time.alpha == 0.5 and case.time.step >= 1e-3:
         return None  # the figure's constant acceleration: damped within the window, judged with Figures 3 to 6
     errors = spectra.mesh_error(case)
@@ -91,7 +91,7 @@ def dispersion(case: Scene) -> Bands | None:
 
 
 def distance_from_the_finest_mesh(case: Scene) -> Bands:
-    """Differences of meshes of 4 and of 8 elements a side from one of 16, this suite's own, within half of each."""
+    """Differences of meshes of 4 and 8 elements a side from one of 16, this suite's own, within half of each."""
     displacement, pressure = {4: (1.3e-4, 2.4e-5), 8: (2.2e-5, 4.4e-6)}[case.fem.per_side]
     return {
         "displacement.l2": (displacement / 1.5, displacement * 1.5),
@@ -111,7 +111,7 @@ def apart(case: Scene, dda: Row, fem: Row) -> Metrics:
 
 
 def drift(levels: Sequence[tuple[Scene, Row]]) -> Metrics:
-    """Return by how much elements on corner point springs settle more with every halving of the mesh [m]."""
+    """Return by how much elements on corner springs settle more with every halving of the mesh [m]."""
     settled = [or_nan(fem.metrics.get("displacement.static")) for _, fem in levels]
     return {"halving": np.polyfit(np.log2([case.fem.per_side for case, _ in levels]), settled, 1)[0]}
 

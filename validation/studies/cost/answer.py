@@ -16,7 +16,7 @@ NUMBERS = ("dt [ms]", "run [ms]", "set-up [ms]", "work")
 
 
 def answer(manifest: Manifest) -> Blocks:
-    """Return the blocks of the cheapest ways to each accuracy, and of what the errors are measured in."""
+    """Return the cheapest ways to each accuracy, and what the errors are measured in."""
     rows = []
     measured = ""
     for derived in manifest["derived"]:
@@ -36,7 +36,7 @@ def answer(manifest: Manifest) -> Blocks:
 
 
 def _uncertainty(metrics: Mapping[str, Any]) -> str:
-    """Say how far the reference itself may be off, where it is not exact."""
+    """Say how far a reference that is not exact may be off."""
     values = []
     for key, value in metrics.items():
         if key.startswith("uncertainty."):

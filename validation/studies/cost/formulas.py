@@ -1,6 +1,6 @@
 """The study `cost`: error against run time and work of three blocks, and the orders behind it.
 
-The blocks are in `validation.studies.cost.ladder`, steps and meshes refined together, so that one line per method shows
+For the blocks `validation.studies.cost.ladder` refines steps and meshes together, so that one line per method shows
 what its error costs; here one of the two is refined alone, large steps for orders in h and smooth blocks for orders in
 dt, to keep the two fits apart.
 """
@@ -39,19 +39,19 @@ WITHOUT_EXACT = "cost-h-poisson"
 
 @functools.cache
 def scenes() -> tuple[str | Scene, ...]:
-    """Return the blocks by all methods, and the scenes of the folder in which steps or meshes alone are refined."""
+    """Return the blocks by all methods, and the scenes in which steps or meshes alone are refined."""
     blocks = itertools.chain.from_iterable(ladder_of(name).scenes() for name in BLOCKS)
     return (*blocks, *IN_TIME, *IN_MESH, WITHOUT_EXACT)
 
 
 @functools.cache
 def ladder_of(name: str) -> Ladder:
-    """Return one of the blocks with its window."""
+    """Return a block with its window."""
     return Ladder.of(load_scene(f"cost-{name}"))
 
 
 def of_scene(base: Scene) -> dict[str, Any]:
-    """Return the fields of the study of a user's block: the same methods, and no gates.
+    """Return the fields of the study of a user's block: the same methods, no gates.
 
     Raises
     ------
@@ -77,7 +77,7 @@ def nothing(scenes: Sequence[Scene], finished: Finished) -> Annotations:
     return {"alarms": [], "budgets": []}
 
 
-# ---- orders ---------------------------------------------------------------------------------------------------------
+# ---- orders ----
 
 
 def _columns(history: History, every: int = 1) -> dict[str, Array]:
@@ -85,7 +85,7 @@ def _columns(history: History, every: int = 1) -> dict[str, Array]:
 
 
 def order_in_time(name: str) -> Derived:
-    """Return the row of the order in dt, against a step so fine that its own error does not count."""
+    """Return the row of the order in dt, against a step whose own error does not count."""
     levels = load_scene(name).expand()[:ORDER_LEVELS]
     reference = load_scene(IN_TIME[-1]).expand()[-1].name
 

@@ -1,6 +1,6 @@
 """How a block is solved by many methods, each of them refined, and what their errors are measured in.
 
-**Window.** The errors are those of `PERIODS` periods of the first mode from the instant on at which the block stands on
+**Window.** The errors are those of `PERIODS` periods of the first mode from the instant at which the block stands on
 its springs: longer, every scheme and every model is out of phase with the exact motion, and no error tells a good one.
 The first frequency is the smaller root of det(K - w^2 M) = 0 of one strain on its springs (`one_strain`), k = 2 p::
 
@@ -12,7 +12,7 @@ which is within some percent of every other model's.
 whose amplitudes fall with 1 / w^2 only. Under average acceleration each lags by w^3 dt^2 t / 12, up to the whole of it
 at w = (dt^2 t)^(-1/3): the sum of the squares up to there and beyond falls with dt, not dt^2. No load rises at once. By
 linearity the answer to a load that rises evenly over a time r is the running mean over r of the answer to the sudden
-one, and that to a load that rises as an S over 2 r, faster and then slower, the mean of this mean::
+one, and that to a load that rises as an S over 2 r the mean of this mean::
 
     x_r(t) = 1/r integral of x from t - r to t        amplitudes times sin(w r / 2) / (w r / 2), squared
 
@@ -55,41 +55,23 @@ SQUARE_CUTS = {"few": 3, "many": 6}  # along both sides, where the motion is not
 
 @dataclass(frozen=True)
 class Method:
-    """A solver with its scheme, refined.
+    """A solver with its scheme, refined."""
 
-    Attributes
-    ----------
-    id, label, solver
-        Of scenes, of tables and figures, and the solver's name.
-    time
-        The scheme, as the table of a scene states it.
-    levels
-        Steps a period.
-    fem, per_element
-        Of the elements, and steps a period for each of them along a side.
-    cut
-        Which of the subdivisions, if any.
-    scaled
-        Factors on values of the block.
-    is_choice
-        Whether it stands beside a method with one choice changed.
-    """
-
-    id: str
-    label: str
+    id: str  # of scenes
+    label: str  # of tables and figures
     solver: str
-    time: dict[str, Any]
-    levels: tuple[int, ...]
+    time: dict[str, Any]  # the scheme, as the table of a scene states it
+    levels: tuple[int, ...]  # steps a period
     fem: dict[str, Any] = field(default_factory=dict)
-    per_element: int = 0
-    cut: str = ""
-    scaled: dict[str, float] = field(default_factory=dict)
-    is_choice: bool = False
+    per_element: int = 0  # steps a period for each element along a side
+    cut: str = ""  # which of the subdivisions, if any
+    scaled: dict[str, float] = field(default_factory=dict)  # factors on values of the block
+    is_choice: bool = False  # stands beside a method with one choice changed
 
 
 @functools.cache
 def methods() -> tuple[Method, ...]:
-    """Return the methods, and at the end what a choice changes of one of them."""
+    """Return the methods, and at the end those with one choice changed."""
     table = table_beside(__file__, "methods.toml")
     schemes = table["schemes"]
     listed = [Method(time=schemes[row.pop("scheme")], **row) for row in table["method"]]
@@ -137,20 +119,12 @@ def landing(scene: Scene) -> float:
 
 @dataclass(frozen=True)
 class Ladder:
-    """A block with the window in which it is solved.
-
-    Attributes
-    ----------
-    base
-        The scene.
-    period, window, mean
-        The first period, the simulated time, and that of the running mean [s].
-    """
+    """A block with the window in which it is solved."""
 
     base: Scene
-    period: float
-    window: float
-    mean: float
+    period: float  # the first [s]
+    window: float  # simulated time [s]
+    mean: float  # time of the running mean [s]
 
     @classmethod
     def of(cls, base: Scene) -> Ladder:
@@ -183,7 +157,7 @@ class Ladder:
 
     @property
     def features(self) -> set[str]:
-        """The features of the block, without scheme and sub-blocks, which the methods have."""
+        """The features of the block, without scheme and sub-blocks."""
         return set(features.of(self.base)) - features.SCHEMES - {features.SUB_BLOCKS}
 
     @property
@@ -194,7 +168,7 @@ class Ladder:
 
     @property
     def reference(self) -> Method:
-        """The method that the others are compared with; of elements there is a second one of half as many."""
+        """The method of reference; of elements there is a second one of half as many."""
         exact = ""
         if self.is_column and not self.features:
             exact = "continuum"
@@ -208,7 +182,7 @@ class Ladder:
         return Method("reference", "finest mesh", "fem", time, levels, {"degree": 1}, per_element)
 
     def steps(self, level: int) -> int:
-        """Return the number of steps of a level."""
+        """Return the steps of a level."""
         return max(1, round(level * self.window / self.period))
 
     def scene(self, method: Method) -> Scene:
@@ -238,5 +212,5 @@ class Ladder:
         return parse_scene(data, name)
 
     def scenes(self) -> tuple[Scene, ...]:
-        """Return the scenes of all methods, and of the reference."""
+        """Return the scenes of all methods and of the reference."""
         return tuple(self.scene(method) for method in (*methods(), self.reference))

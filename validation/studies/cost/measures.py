@@ -38,19 +38,15 @@ ANY, OWN, ELEMENTS = "any", "dda", "fem"  # who is asked for the cheapest way
 
 
 def on_grid(history: History, column: str, grid: Array) -> Array:
-    """Return a column at the instants of a grid, straight between its steps, from zero at t = 0 on."""
+    """Return a column at the instants of a grid, straight between its steps, from zero at t = 0."""
     return np.asarray(np.interp(grid, np.append(0.0, history.time), np.append(0.0, history.columns[column])))
 
 
 def running_mean(values: Array, count: int) -> Array:
     """Return the mean over the last `count` intervals of a grid, of values that are straight between its instants.
 
-    Parameters
-    ----------
-    values
-        At the instants of a grid in equal intervals, from zero at t = 0 on, shape (intervals + 1,).
-    count
-        Intervals of the mean, before t = 0 of zeros.
+    Values are at the instants of equal intervals, from zero at t = 0 on, shape (intervals + 1,); before t = 0 are
+    zeros.
     """
     integral = np.append(0.0, np.cumsum((values[1:] + values[:-1]) / 2))
     before = np.append(np.zeros(count), integral)[: len(values)]
@@ -90,7 +86,7 @@ class Run:
     metrics: Metrics
 
     def number(self, name: str) -> float:
-        """Return one of its numbers, NaN where it has none."""
+        """Return one of its numbers, or NaN."""
         value = self.metrics.get(name)
         return float(value) if isinstance(value, int | float) else np.nan
 
@@ -113,7 +109,7 @@ class BlockRows:
                     self.cases.append((method, level, case))
 
     def rows(self) -> Iterator[Derived]:
-        """Yield the rows: of the reference, of each run, of the cheapest ways, of facts."""
+        """Yield the rows: of the reference, each run, the cheapest ways, facts."""
         every = (
             self.reference,
             *((case.name, method.solver) for method, _, case in self.cases if not method.is_choice),
@@ -130,7 +126,7 @@ class BlockRows:
             yield Derived(self.ladder.base.name, f"facts of {quantity}", every, self._facts(quantity))
 
     def _reference(self, finished: Finished) -> Metrics:
-        """Return what the errors are measured in, and the uncertainty of the reference."""
+        """Return what the errors are measured in, and its uncertainty."""
         ladder = self.ladder
         metrics: dict[str, Value] = {"block": self.name, "label": ladder.reference.label}
         metrics |= {"period": ladder.period, "window": ladder.window, "mean": ladder.mean}
@@ -161,7 +157,7 @@ class BlockRows:
         return compute
 
     def runs(self, finished: Finished) -> list[Run]:
-        """Return the runs that completed, choices left out."""
+        """Return the completed runs, without choices."""
         completed = []
         for method, level, case in self.cases:
             row = None if method.is_choice else finished.row(case.name, row_name(method))
@@ -213,12 +209,12 @@ class BlockRows:
 
 
 def reached(runs: Sequence[Run], quantity: str) -> int:
-    """Return how many of the accuracies some runs reach."""
+    """Return how many of the accuracies runs reach."""
     return sum(bool(reaching(runs, quantity, error)) for error in ACCURACIES.values())
 
 
 def reaching(runs: Sequence[Run], quantity: str, error: float) -> list[Run]:
-    """Return the runs that are within an error, as are all finer ones of their method: none is right by accident."""
+    """Return the runs within an error, as are all finer ones of their method: none is right by accident."""
     chosen = []
     for run in runs:
         finer = [other for other in runs if other.method == run.method and other.level >= run.level]
@@ -228,7 +224,7 @@ def reaching(runs: Sequence[Run], quantity: str, error: float) -> list[Run]:
 
 
 def way(run: Run) -> str:
-    """Say what is run: the method with its mesh, cut or number of modes."""
+    """Say what is run: the method with mesh, cut or number of modes."""
     if "cut" in run.metrics:
         return run.method.label.replace(f"{run.method.cut} sub-blocks", f"{run.metrics['cut']} sub-blocks")
     if "mesh" in run.metrics:

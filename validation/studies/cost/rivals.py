@@ -22,7 +22,7 @@ MOST_SOLVES = 6  # of a step: the contact is closed or open
 
 
 def run_of(scene: Scene, displacement: Array, pressure: Array, work: dict[str, int], began: float, built: float) -> Run:
-    """Return the run of two columns, whose set-up began and ended at two instants [s]."""
+    """Return the run of two columns; its set-up began and ended at two instants [s]."""
     columns = {"displacement": displacement, "contact_pressure": pressure}
     time = np.arange(1, scene.time.steps + 1, dtype=np.float64) * scene.time.step
     history = History(time, columns)

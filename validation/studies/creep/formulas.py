@@ -43,7 +43,7 @@ def derived() -> DerivedRows:
 
 
 def base(scene: Scene, history: History) -> Metrics:
-    """Return the mean slide of the corners at quarters of the run, and its mean speed over the second half."""
+    """Return the corners' mean slide at quarters of the run, and its mean speed over the second half."""
     mean_slide = slid(history.columns)
     n = len(history.time)
     values = {f"way.{k}": float(mean_slide[k * n // 4 - 1]) for k in (1, 2, 3, 4)}
@@ -61,7 +61,7 @@ def _nearest(step: float) -> Derived:
 
 
 def _beside(like_cases: tuple[Scene, ...], program_slide: float, finished: Finished) -> Metrics:
-    """Return how far the program's way is from those of the springs, over what their spread and its digits allow."""
+    """Return how far the program's way is from those of the springs, over what their spread and digits allow."""
     histories = [finished.needed_history(case.name, DDA) for case in like_cases]
     slides = [float(history.columns["horizontal_displacement"][-1]) for history in histories]
     middle = (min(slides) + max(slides)) / 2
@@ -89,7 +89,7 @@ def damped_way(case: Scene) -> Band:
 
 
 def lagged_creep(case: Scene) -> Band:
-    """Return the speed at which a block under lagged friction goes on to creep [m/s]."""
+    """Return the speed of creep under lagged friction [m/s]."""
     scale = friction.creep_scale(case)
     return 0.01 * scale, 2 * scale
 

@@ -1,7 +1,7 @@
 """The study `impacts`: benchmarks of impact that others publish, by exact motions, by DDA and by elements.
 
 The data are those of the publications; the numbers are closed forms, or those of an independent program where the
-springs are soft enough to count (p h / E finite, where the publications have a rigid wall).
+springs are soft enough to count (p h / E finite; the publications have a rigid wall).
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ def transit(scene: Scene) -> float:
 
 
 def stiffness_ratio(scene: Scene) -> float:
-    """Return the springs' stiffness over that of the bar, 2 p h / (E a) [-]."""
+    """Return the springs' stiffness over the bar's, 2 p h / (E a) [-]."""
     width, height = scene.block.rectangle or (math.nan, math.nan)
     return 2 * scene.contact.stiffness * height / (scene.block.young * width)
 
@@ -61,7 +61,7 @@ def bounce(scene: Scene) -> tuple[float, float, float]:
 
 
 def fall(scene: Scene) -> float:
-    """Return when a block that falls freely lands, sqrt(2 s / g) [s]."""
+    """Return when a block in free fall lands, sqrt(2 s / g) [s]."""
     return math.sqrt(2 * scene.contact.gap / scene.load.gravity)
 
 
@@ -92,7 +92,7 @@ def wall(scene: Scene) -> Bands:
 
 
 def stiff_springs(scene: Scene) -> Bands:
-    """Return the impact of a bar on stiff springs, which no load accelerates."""
+    """Return the impact of an unloaded bar on stiff springs."""
     return {
         "switches.first_closing": near(scene.contact.gap / -scene.block.velocity, 1e-12),
         "switches.first_opening": near(release(scene), 1e-12),
@@ -116,7 +116,7 @@ def depth_by_steps(scene: Scene) -> Band:
 
 
 def rigid(levels: Sequence[tuple[Scene, Row]]) -> Metrics:
-    """Return the bouncing bar's times on a rigid wall, linearly in 1/p from the two stiffest springs [s]."""
+    """Return the bouncing bar's times on a rigid wall, linear in 1/p from the two stiffest springs [s]."""
     a, b = (1 / stiffness_ratio(case) for case, _ in levels[-2:])
     times: dict[str, Value] = {}
     for name, switch in SWITCHES.items():

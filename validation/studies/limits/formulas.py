@@ -17,7 +17,7 @@ FINE = 32  # elements a side
 
 
 def fine() -> list[Scene]:
-    """Return cases of the scene `locking` with quadratic elements on a fine mesh."""
+    """Return cases of `locking` with quadratic elements on a fine mesh."""
     cases_by_name = {case.name: case for case in cases("locking")}
     finer = []
     for poisson in COARSE:
@@ -33,7 +33,7 @@ def a_rounding_a_step(case: Scene) -> Band:
 
 
 def scenes() -> tuple[str | Scene, ...]:
-    """Return the scenes of locking, two of them on a fine mesh too, and the long run."""
+    """Return the scenes of locking, two on a fine mesh too, and the long run."""
     return "locking", *fine(), "long-run"
 
 
@@ -52,7 +52,7 @@ def derived() -> DerivedRows:
 
 
 def _over(name: str, metric: str, case: Scene, other: Scene, of_ratio: Callable[[float], float]) -> Derived:
-    """Return the row of a case: what a function makes of its displacement at rest over that of another."""
+    """Return the row of a function of the displacement at rest of a case over that of another."""
 
     def compute(finished: Finished) -> Metrics:
         first, second = (or_nan(finished.rows[one.name, "fem"].metrics[STATIC]) for one in (case, other))

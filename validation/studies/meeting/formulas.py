@@ -36,7 +36,7 @@ SPECIAL = {"stack": "column", "weight": "column", "cradle": "column"}  # of the 
 
 
 def pairs_of(name: str) -> list[tuple[Scene, Scene]]:
-    """Return the cases of a scene in the plane, each with that of the special body."""
+    """Return the cases of a scene in the plane, each with the special body's."""
     special = cases(f"meeting-{name}-{SPECIAL.get(name, 'block')}")
     return list(zip(cases(f"meeting-{name}-plane"), special, strict=True))
 
@@ -58,18 +58,18 @@ def derived() -> DerivedRows:
 
 
 def swept() -> list[Scene]:
-    """Return the cases that own the row `order`: of each two that are compared the first."""
+    """Return the cases that own the row `order`: of each compared two the first."""
     return [pair[0] for name in BY_STRAIN + BY_LOAD for pair in pairs_of(name)[::2]]
 
 
-# ---- two histories -------------------------------------------------------------------------------------------------
+# ---- two histories ----
 
 
 def in_plane(plane: History, column: str) -> Array:
     """Return the values of the plane [m, rad, N] for a column of the special body.
 
     ``displacement_k`` and ``force_(k + 3)`` are of block ``bk`` of three and of the contact below it; a block that is
-    cut has an odd number of parts, of which the one in the middle has its centroid.
+    cut has an odd number of parts, whose middle one has its centroid.
     """
     name, _, number = column.rpartition("_")
     if name == "displacement":
@@ -135,11 +135,11 @@ def _number(value: Value) -> float:
     return value
 
 
-# ---- bands ----------------------------------------------------------------------------------------------------------
+# ---- bands ----
 
 
 def largest_coordinate(case: Scene) -> float:
-    """Return the largest coordinate of a block that moves [m]."""
+    """Return the largest coordinate of a moving block [m]."""
     return float(max(np.max(np.abs(block.vertices)) for block in moving_blocks(case)))
 
 

@@ -33,7 +33,7 @@ def damped_roots(stepping: Stepping, mass: Array, damping: Array, stiffness: Arr
 
 
 def exact_damped_roots(mass: Array, damping: Array, stiffness: Array) -> Array:
-    """Return the damping ratios of the oscillating modes of a damped system, exact in time, by frequency."""
+    """Return the same, exact in time."""
     size = len(mass)
     rates = np.block(
         [[np.zeros((size, size)), np.eye(size)], [-np.linalg.solve(mass, stiffness), -np.linalg.solve(mass, damping)]]
@@ -61,7 +61,7 @@ def two_unknowns(scene: Scene) -> tuple[Array, Array, Array]:
 
 
 def exact_locked(scene: Scene, time: Array) -> Array:
-    """Return the displacement of the centroid of the locked block under a suddenly applied pressure, from rest [m]."""
+    """Return the centroid's displacement of the locked block under a sudden pressure, from rest [m]."""
     mass, stiffness, _ = two_unknowns(scene)
     width, height = statics.size(scene)
     load = scene.load.pressure * width * np.array([-1.0, -height / 2])

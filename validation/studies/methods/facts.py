@@ -1,4 +1,4 @@
-"""What is said of cures for DDA, as numbers with their conditions: impacts, dashpots, passes, the explicit scheme."""
+"""What is said of cures for DDA, as numbers: impacts, dashpots, passes, the explicit scheme."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def paper_block(stiffness: float = 1e9) -> Scene:
 
 
 def impacts(finished: Finished) -> Metrics:
-    """Return the mean rebound of a rigid mass on a spring over the phase of its landing, W = w_c dt."""
+    """Return the mean rebound of a rigid mass on a spring over the phase of landing, W = w_c dt."""
     stages = {"forward Euler": EXPLICIT_EULER, "symplectic Euler": LEAPFROG}
     stages |= {name: Stepping(1.0, *scheme).stages for name, scheme in SCHEMES.items()}
     numbers = {}
@@ -103,7 +103,7 @@ def explicit_limits(finished: Finished) -> Metrics:
 
 
 def opened_errors(runs: Mapping[str, Scene], exact: Mapping[str, Scene], finished: Finished) -> Metrics:
-    """Return the relative L2 error of the displacement over 0.05 s where contact opens, by words for scheme and p."""
+    """Return the relative L2 displacement error over 0.05 s of contact that opens, by scheme and p."""
     errors = {}
     for word, case in runs.items():
         rows = round(0.05 / case.time.step)
@@ -115,7 +115,7 @@ def opened_errors(runs: Mapping[str, Scene], exact: Mapping[str, Scene], finishe
 
 
 def derived(runs: Mapping[str, Scene], exact: Mapping[str, Scene]) -> DerivedRows:
-    """Return the rows: runs of contact that opens by words for scheme and p, the exact ones by p."""
+    """Return the rows: runs of contact that opens by scheme and p, the exact ones by p."""
     computed = {
         "mean rebound": impacts,
         "dashpot": dashpots,

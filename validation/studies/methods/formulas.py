@@ -60,13 +60,13 @@ COLUMN_EVENTS = ("methods-column-exact", "column-events")
 IMPLICIT = tuple(scheme for scheme in METHODS if scheme.group != "explicit")  # what a rigid block's own strain allows
 FRICTIONAL = tuple(scheme for scheme in IMPLICIT if scheme.id != "conserving")  # conserving contact has no friction
 
-# ---- scenes ---------------------------------------------------------------------------------------------------------
+# ---- scenes ----
 
 
 def varied(
     scheme: Method, base: str, name: str, title: str, values: Mapping[str, Any], **lists: Sequence[float]
 ) -> Scene:
-    """Return a built-in scene under a method, whose lists of values are varied together; a key is ``time_step``."""
+    """Return a built-in scene under a method, lists of values varied together; a key is ``time_step``."""
     scene = scheme.scene(load_scene(base), {"run.solvers": ["dda"], **values})
     sweep = {"mode": "zip"} | {key.replace("_", ".", 1): list(row) for key, row in lists.items()}
     return scene.model_copy(
@@ -85,7 +85,7 @@ def over_springs(rows: Sequence[tuple[float, float]], duration: float) -> dict[s
 
 
 def halved(coarsest: int, levels: int) -> dict[str, list[float]]:
-    """Return the lists of steps that are halved."""
+    """Return lists of halved steps."""
     counts = [coarsest * 2**level for level in range(levels)]
     return {"time_step": [REFINED_TIME / count for count in counts], "time_steps": counts}
 
@@ -118,7 +118,7 @@ def refined(scheme: Method) -> Scene:
 
 @functools.cache
 def impacts(scheme: Method) -> Scene:
-    """Return the rigid block that lands on springs, over w_c dt and the phase of the landing."""
+    """Return the rigid block on springs, over w_c dt and the phase of the landing."""
     scene = load_scene("rebound-average")
     rows = [(omega, phase) for omega in IMPACT_OMEGAS for phase in IMPACT_PHASES]
     dt = scene.time.step
@@ -197,7 +197,7 @@ def scenes() -> tuple[Scene, ...]:
 
 @functools.cache
 def cases_by_scene() -> dict[str, tuple[Scene, ...]]:
-    """Return the cases of every scene of the study, by its name."""
+    """Return the cases of every scene, by its name."""
     return {scene.name: scene.expand() for scene in scenes()}
 
 
@@ -221,37 +221,37 @@ def opened() -> dict[str, Scene]:
 
 
 def opened_exactly() -> dict[str, Scene]:
-    """Return the cases whose exact motion these are held to, by p."""
+    """Return the exact cases of these, by p."""
     return {"1E": opened()["(1/4, 1/2), p = 1E"], "100E": opened()["(1/4, 1/2), p = 100E"]}
 
 
 def exact_cases() -> tuple[tuple[str, str], ...]:
-    """Return the cases whose exact motion is run, beside the solvers of their scenes."""
+    """Return the cases whose exact motion is run beside their solvers."""
     return tuple((case.name, "block-events") for case in opened_exactly().values())
 
 
-# ---- what is derived from the runs ----------------------------------------------------------------------------------
+# ---- what is derived from the runs ----
 
 
 def locked_error(case: Scene, history: History) -> Metrics:
-    """Return the largest displacement error over the largest exact displacement."""
+    """Return the largest displacement error over the largest exact one."""
     expected = exact_locked(case, history.time)
     return {"largest": np.max(np.abs(history.displacement - expected)) / np.max(np.abs(expected))}
 
 
 def final_energy(case: Scene, finished: Finished) -> Metrics:
-    """Return the energy at the last step over W0, that of the start being zero."""
+    """Return the last energy over W0; that of the start is zero."""
     metrics = finished.rows[case.name, "dda"].metrics
     return {"share": sum(or_nan(metrics.get(name)) for name in ENERGIES) / ENERGY}
 
 
 def relative_error(values: Array, expected: Array) -> float:
-    """Return the relative L2 error of a displacement."""
+    """Return the relative L2 error."""
     return float(np.linalg.norm(values - expected) / np.linalg.norm(expected))
 
 
 def error_of_steps(case: Scene, finished: Finished) -> float:
-    """Return the relative L2 error of the displacement at the coarsest steps."""
+    """Return the relative L2 displacement error at the coarsest steps."""
     stride = case.time.steps // COARSEST
     displacement = finished.needed_history(case.name, "dda").displacement[stride - 1 :: stride]
     return relative_error(displacement, finished.needed_history(*BLOCK_EVENTS).displacement)
@@ -359,7 +359,7 @@ def equal_cost(finished: Finished) -> Metrics:
 def row(
     owner: Scene | str, name: str, cases: Sequence[Scene], compute: Callable[..., Any], *first: Any, **options: Any
 ) -> Derived:
-    """Return a row that is computed from runs of DDA by a function, whose first arguments are given."""
+    """Return a row of a function of runs of DDA, whose first arguments are given."""
     needs = tuple((case.name, "dda") for case in cases) + options.pop("exact", ())
     scene = owner if isinstance(owner, str) else owner.name
     return Derived(scene, name, needs, functools.partial(compute, *first), **options)
@@ -398,7 +398,7 @@ MAP_PHASES = 40
 
 @functools.cache
 def data() -> Mapping[str, Any]:
-    """Return curves of the theory for the figures: damping ratios over w dt, restitutions over w_c dt; and labels."""
+    """Return curves for the figures: damping ratios over w dt, restitutions over w_c dt; and labels."""
     damping = []
     landings = []
     for scheme in map(method, CURVES):
@@ -419,11 +419,11 @@ def _short(value: float) -> float | None:
     return significant(value, 5) if math.isfinite(value) else None
 
 
-# ---- bands ----------------------------------------------------------------------------------------------------------
+# ---- bands ----
 
 
 def damping_ratios(case: Scene) -> Bands:
-    """Return the damping ratios of both modes of the locked block, where the scheme's roots swing."""
+    """Return the damping ratios of both modes of the locked block, where roots swing."""
     stepping = Stepping.of(case)
     ratios = {}
     for mode, frequency in (("mode1", spectra.dda_frequency(case)), ("contact", spectra.contact_frequency(case))):
@@ -434,19 +434,19 @@ def damping_ratios(case: Scene) -> Bands:
 
 
 def column_cases() -> Iterator[Scene]:
-    """Yield the cases of five blocks that are dropped on each other."""
+    """Yield the cases of five dropped blocks."""
     for scheme in SCHEMES:
         yield from expanded(column(scheme))
 
 
 def solves_of_a_step(case: Scene) -> Band:
-    """Return the solves of a scheme's stages, and what the few steps in which a contact switches add to their mean."""
+    """Return the solves of a scheme's stages, and what the few steps with a switch add to their mean."""
     (scheme,) = (scheme for scheme in SCHEMES if column(scheme).name == scene_of(case.name))
     return float(scheme.solves), scheme.solves + 0.25
 
 
 def settled(case: Scene) -> float:
-    """Return twice the settlement under the weight, as the friction's part of it, over the distance slid."""
+    """Return 2 tan(phi) times the settlement under the weight, over the distance slid."""
     tangent = math.tan(math.radians(case.contact.friction or 0.0))
     return 2 * tangent * friction.settlement(case) / friction.run_out(case, case.time.duration)
 

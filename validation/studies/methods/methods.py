@@ -1,4 +1,4 @@
-"""The methods that the study compares: what a scene sets for each, and what it is called."""
+"""The methods that the study compares: what a scene sets for each, and its name."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Method:
     gains: bool  # whether contact that opens and closes can give energy
 
     def scene(self, base: Scene, values: Mapping[str, Any]) -> Scene:
-        """Return a scene with this method and other values; its sweep is left out."""
+        """Return a scene with this method and other values, without its sweep."""
         still = base.model_copy(update={"sweep": {}})
         return still.with_values({"time.start": "consistent", **values, **self.values})
 

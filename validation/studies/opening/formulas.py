@@ -26,7 +26,7 @@ def samples(case: Scene, history: History) -> Metrics:
 def front(case: Scene) -> float:
     """Return the pressure that a front can bring in a few ulps of the last instant [Pa].
 
-    The contact pressure changes by at most 2 q in a time 1 / kappa, kappa = 2 p / (a rho c) [1/s].
+    It changes by at most 2 q in a time 1 / kappa, kappa = 2 p / (a rho c) [1/s].
     """
     b = case.block
     kappa = 2 * case.contact.stiffness / (b.base_length * math.sqrt(b.young * b.density))
@@ -34,5 +34,5 @@ def front(case: Scene) -> float:
 
 
 def order_in_mesh(runs: Sequence[tuple[Scene, History, History]]) -> Metrics:
-    """Return the order of elements against the exact bar, of meshes that are refined."""
+    """Return the order in h of elements against the exact bar."""
     return convergence(runs, "fem.elements")

@@ -1,4 +1,1 @@
-"""The paper's figures and the register of its statements.
-
-Claims are data with a measure and bands.
-"""
+"""The paper's figures and the register of its statements."""

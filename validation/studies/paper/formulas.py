@@ -44,9 +44,9 @@ SCHEMES = {  # of Figure 1: name -> alpha, delta
 
 
 def data() -> Mapping[str, Any]:
-    """Return the words of the claims, and Figure 1: spectral radius over w dt, and the root of 1 + h that is printed.
+    """Return the words of the claims, and Figure 1: spectral radius over w dt, and the printed root of 1 + h.
 
-    What is printed departs from the radius where the roots are real; only that part is kept.
+    That departs from the radius where the roots are real; only this part is kept.
     """
     omega = np.geomspace(*OMEGA, 241)
     schemes = []
@@ -79,6 +79,6 @@ def period(case: Scene, bar: Row) -> Metrics:
 
 
 def angles(case: Scene, dda: Row) -> Metrics:
-    """Return w dt of both modes of the block, as far as Figure 1 reaches."""
+    """Return w dt of both modes of the block within Figure 1."""
     of_modes = {mode: or_nan(dda.metrics.get(f"{mode}.frequency")) * case.time.step for mode in MODES}
     return {mode: angle for mode, angle in of_modes.items() if OMEGA[0] <= angle <= OMEGA[1]}

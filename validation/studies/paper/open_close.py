@@ -1,6 +1,6 @@
-"""The claims C14 to C16 of the register: what the paper says of open-close, on one block and on twenty.
+"""The claims C14 to C16 of the register: what the paper says of open-close, on one block and on twenty rigid ones.
 
-The twenty are rigid ones on each other. One matrix belongs to all schemes at a step, so that delta alone differs.
+One matrix belongs to all schemes at a step, so that delta alone differs.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ REST, SHAKEN = (named(f"columns-solves-{stack}") for stack in ("rest", "shaken")
 
 
 def stacks(cases: dict[str, Scene], delta: float) -> list[str]:
-    """Return the cases of twenty blocks under a scheme, the longest step first."""
+    """Return the cases of twenty blocks under a scheme, longest step first."""
     chosen = [name for name, scene in cases.items() if scene.time.delta == delta]
     return sorted(chosen, key=lambda name: -cases[name].time.step)
 
@@ -35,12 +35,12 @@ DAMPED_STACKS = stacks(REST, 1.0)
 
 
 def most_solves(e: Evidence, cases: list[str]) -> float:
-    """Return the largest number of solves in a step of any case."""
+    """Return the most solves in a step of any case."""
     return whole(max(e.number(case, "contact.most_solves") for case in cases))
 
 
 class BondedCorners(NamedTuple):
-    """How many random states of two corners, bonded in shear while closed, have no answer, or no single one."""
+    """How many random states of two corners, bonded in shear while closed, have no answer, or several."""
 
     unsolvable: int  # no combination of open and closed corners fits
     ambiguous: int  # several combinations fit
@@ -54,9 +54,9 @@ def bonded_corners(case: str, alpha: float, step: float) -> BondedCorners:
 
         w = w_f + C lambda,        C = alpha dt^2 B S^-1 B',        S = M + alpha dt^2 K,
 
-    where w_f are those without contact forces: all that the scheme's delta and gg act on. Here w_f is drawn from a
-    normal distribution in all four directions, whose scale does not matter. A combination of open and closed corners
-    fits where the closed ones press, w < 0, and the open ones do not.
+    where w_f are those without contact forces: all that the scheme's delta and gg act on, here drawn from a normal
+    distribution in all four directions, whose scale does not matter. A combination of open and closed corners fits
+    where the closed ones press, w < 0, and the open ones do not.
     """
     block_model = model(case)
     system = block_model.mass + alpha * step**2 * block_model.block.elastic()
@@ -120,7 +120,7 @@ def vibrating(e: Evidence) -> dict[str, float]:
 
 
 def mean_solves(e: Evidence, cases: list[str]) -> list[float]:
-    """Return the mean solves a step of each case."""
+    """Return the mean solves a step by case."""
     return [e.number(case, "contact.mean_solves") for case in cases]
 
 

@@ -1,4 +1,4 @@
-"""The claims C1 to C13 and C17 to C22 of the register: the statements of the paper's sections 2, 4 and 5."""
+"""The claims C1 to C13 and C17 to C22 of the register, of the paper's sections 2, 4 and 5."""
 
 from __future__ import annotations
 
@@ -48,8 +48,8 @@ def settling_tolerance(e: Evidence, case: str, quantity: str, count: int) -> flo
     """Return the greatest tolerance up to 0.5 at which a quantity takes `count` steps to settle, 0 if there is none.
 
     It settles in n steps at a tolerance t where the greatest distance from the static value from step n on is at most
-    t, and that from step n - 1 on is greater: so the tolerances of a count are one interval, of which only the part
-    from 1e-4 to 0.5 counts.
+    t, and that from step n - 1 on is greater: the tolerances of a count are one interval, of which the part from 1e-4
+    to 0.5 counts.
     """
     remaining = np.maximum.accumulate(np.abs(e.scaled(case, quantity) - 1)[::-1])[::-1]
     least = max(remaining[count - 1], TOLERANCES[0])
@@ -58,7 +58,7 @@ def settling_tolerance(e: Evidence, case: str, quantity: str, count: int) -> flo
 
 
 def force_first(e: Evidence) -> dict[str, float]:
-    """Return the settling steps, the tolerances that give the paper's, and the least steps that the force is later."""
+    """Return settling steps, the tolerances of the paper's, and the least steps that the force is later."""
     tolerances = np.geomspace(*TOLERANCES, 200)
     late = [e.settles(COARSE, "pressure", t) - e.settles(COARSE, "displacement", t) for t in tolerances]
     return steps_of(e, COARSE) | {
@@ -69,7 +69,7 @@ def force_first(e: Evidence) -> dict[str, float]:
 
 
 def two_answers(e: Evidence) -> dict[str, float]:
-    """Return the settling steps of Figures 3 to 6 at dt = 0.002 s, and the tolerances that give the paper's."""
+    """Return the settling steps of Figures 3 to 6 at dt = 0.002 s, and the tolerances of the paper's."""
     return steps_of(e, MIDDLE) | {
         "greatest tolerance of 34 steps, displacement (0: none)": settling_tolerance(e, MIDDLE, "displacement", 34),
         "of 36 steps, force": settling_tolerance(e, MIDDLE, "pressure", 36),
@@ -79,7 +79,7 @@ def two_answers(e: Evidence) -> dict[str, float]:
 
 
 def stiff_steps(e: Evidence) -> dict[str, float]:
-    """Return the settling steps at p = 10E, and the tolerances that give the paper's."""
+    """Return the settling steps at p = 10E, and the tolerances of the paper's."""
     return steps_of(e, STIFF) | {
         "greatest tolerance of 20 steps, displacement (0: none)": settling_tolerance(e, STIFF, "displacement", 20),
         "of 21 steps, force (0: none)": settling_tolerance(e, STIFF, "pressure", 21),
@@ -130,14 +130,14 @@ def over_stiffness(e: Evidence) -> dict[str, float]:
 
 
 def peaks(displacement: Array) -> Array:
-    """Return the heights of a history's maxima above the static value."""
+    """Return the heights of maxima above the static value."""
     middle = displacement[1:-1]
     is_peak = (middle > displacement[:-2]) & (middle >= displacement[2:]) & (middle > 1)
     return middle[is_peak]
 
 
 def small_step(e: Evidence) -> dict[str, float]:
-    """Return first and last peak over static, xi, and what a few periods take, for the stiffnesses of Figure 7."""
+    """Return first and last peak over static, xi, and the loss of a few periods, for the p of Figure 7."""
     values: dict[str, float] = {}
     falls = []
     lost = []
@@ -155,13 +155,13 @@ def small_step(e: Evidence) -> dict[str, float]:
 
 
 def stiffness_of_small_steps(e: Evidence) -> dict[str, float]:
-    """Return xi of the first mode for the three stiffnesses of Figure 7."""
+    """Return xi of the first mode for the p of Figure 7."""
     xi = [e.number(case, "mode1.damping") for case in A7]
     return {"xi at 10E over 1E": xi[1] / xi[0], "xi at 100E over 1E": xi[2] / xi[0]}
 
 
 def sensitivity(e: Evidence) -> dict[str, float]:
-    """Return the exponents of dt and p in xi of the first mode at small steps, from neighbours in the damping map."""
+    """Return the exponents of dt and p in xi of the first mode at small steps, from neighbours in the map."""
     xi = {(p, step): e.number(cell(p, step), "mode1.damping") for p in (1.0, 10.0, 100.0) for step in (1e-4, 5e-4)}
     exponents = {f"of p, {p:g}E to {10 * p:g}E": math.log10(xi[10 * p, 1e-4] / xi[p, 1e-4]) for p in (1.0, 10.0)}
     exponents |= {f"of dt, {p:g}E": math.log(xi[p, 5e-4] / xi[p, 1e-4]) / math.log(5) for p in (1.0, 10.0, 100.0)}
@@ -171,7 +171,7 @@ def sensitivity(e: Evidence) -> dict[str, float]:
 
 
 def quasi_static(e: Evidence) -> dict[str, float]:
-    """Return the settling steps of Figure 8's two schemes, of average acceleration whether it settles at all."""
+    """Return the settling steps of Figure 8's schemes, and whether average acceleration settles."""
     undamped, damped = A8
     distance = np.abs(e.scaled(undamped, "displacement") - 1)
     return {
@@ -211,7 +211,7 @@ def dominance(e: Evidence) -> dict[str, float]:
 
 
 def dominance_margin(scene: Scene, side: float, step: float, units_in_a_metre: float) -> float:
-    """Return the least of (diagonal - others) / diagonal over the rows of (31), lengths in another unit."""
+    """Return that least (`dominance`) over the rows of (31), lengths in another unit."""
     a = side * units_in_a_metre
     p = scene.contact.stiffness
     E = scene.block.young
@@ -233,7 +233,7 @@ def conditionally_stable(e: Evidence) -> dict[str, float]:
 
 
 def average(e: Evidence) -> dict[str, float]:
-    """Return what average acceleration damps: both modes' |lambda| - 1, and the ratio measured on the history."""
+    """Return what average acceleration damps: both modes' |lambda| - 1, and the history's ratio."""
     return {
         f"|lambda| - 1, {mode} mode": e.number(A8[0], f"{key}.spectral_radius") - 1
         for mode, key in (("first", "mode1"), ("contact", "contact"))
@@ -241,7 +241,7 @@ def average(e: Evidence) -> dict[str, float]:
 
 
 def high_frequencies(e: Evidence) -> dict[str, float]:
-    """Return |lambda| over w dt, from both modes of the map."""
+    """Return |lambda| over w dt, of both modes of the map."""
     pairs = []
     for name, s in MAP.items():
         for mode in ("mode1", "contact"):
@@ -286,7 +286,7 @@ def discount_alone(e: Evidence) -> dict[str, float]:
 
 
 def last_discount(e: Evidence) -> dict[str, float]:
-    """Return the share of the velocity that each of Figure 9's steps takes away, from |lambda|^2 = gg."""
+    """Return the velocity share that Figure 9's steps take away, from |lambda|^2 = gg."""
     shares = [1 - e.number(case, "mode1.spectral_radius") ** 2 for case in A9]
     return {f"discount {i + 1}": share for i, share in enumerate(shares)}
 

@@ -44,7 +44,7 @@ def radius(e: Evidence) -> dict[str, float]:
 
 
 def inertia(e: Evidence) -> dict[str, float]:
-    """Return entries (3, 6) and (6, 6) of a 1 m x 2 m block's inertia over rho, and (1, 1) over the area."""
+    """Return (3, 6) and (6, 6) of a 1 m x 2 m block's inertia over rho, and (1, 1) over the area."""
     block_model = model(SOFT, **OBLONG)
     mass = block_model.mass / block_model.block.material.density
     return {
@@ -64,12 +64,12 @@ def energy(e: Evidence) -> dict[str, float]:
 
 
 def modulus(e: Evidence) -> dict[str, float]:
-    """Return entry (4, 4) of the elastic submatrix over the area [Pa], at mu = 0.3."""
+    """Return (4, 4) of the elastic submatrix over the area [Pa], mu = 0.3."""
     return {"entry (4, 4) over area, Pa": model(LATERAL).block.elastic()[3, 3] / 4.0}
 
 
 def load(e: Evidence) -> dict[str, float]:
-    """Return the load on v over a q, and the static displacement that it causes."""
+    """Return the load on v over a q, and its static displacement."""
     block_model = model(SOFT)
     return {
         "load on v over a q": block_model.force[1] / (2.0 * block_model.load.pressure),
@@ -92,7 +92,7 @@ def lateral(e: Evidence) -> dict[str, float]:
 def shear_load(e: Evidence) -> dict[str, float]:
     """Return the sideways force of the springs at rest, where they hold no shear, and that of (25) and (28) over a q.
 
-    As printed the load of a shear spring is -(p s0 / l) e_r with the s0 of (23), and s0 / l is the normal gap.
+    As printed the load of a shear spring is -(p s0 / l) e_r with the s0 of (23); s0 / l is the normal gap.
     """
     block_model = model(SOFT)
     p = block_model.contact.stiffness

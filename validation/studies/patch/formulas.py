@@ -27,12 +27,12 @@ def rounding_of_joints(case: Scene) -> Band:
 
 
 def elongation_of_the_continuum(case: Scene) -> Band | None:
-    """Return how much longer the elastic rectangle becomes in x [m], None where it does not: a zero judges nothing."""
+    """Return how much the elastic rectangle lengthens in x [m], None where it does not: a zero judges nothing."""
     return _about(_elastic(case), case)
 
 
 def elongation(case: Scene) -> Band | None:
-    """Return the same of glued blocks: with the openings of the joints between its ends [m]."""
+    """Return the same of glued blocks, with the openings of joints between its ends [m]."""
     # The mean opening in x of the joints on a way from the left to the right end: at a height between the ends it
     # crosses one joint of two blocks, two of four blocks about a crossing, and n - 1 of a strip of n.
     plane = case.table(PlaneSection)
@@ -67,7 +67,7 @@ def _elastic(case: Scene) -> float:
 
 
 def _joints(plane: PlaneSection) -> list[tuple[tuple[float, float], tuple[float, float]]]:
-    """Return the shared edges that do not lie level, each from below."""
+    """Return the shared edges that are not level, each from below."""
     edges = set()
     joints = []
     for polygon in plane.polygons:

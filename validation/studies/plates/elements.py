@@ -26,8 +26,8 @@ def displacements(
 ) -> Array:
     """Return the displacements of some nodes of a free plate under loads in balance [m], shape (places, 2).
 
-    Plane stress, unit thickness. The three motions of the whole plate are left out: two nodes keep three places. With
-    glue, in N/m, each triangle has nodes of its own, which springs of that stiffness join at both ends of every shared
+    Plane stress, unit thickness. To leave out the three motions of the whole plate, two nodes keep three places. With
+    glue [N/m] each triangle has nodes of its own, which springs of that stiffness join at both ends of every shared
     edge, in all directions alike.
     """
     points: Array = np.reshape(triangles, (-1, 2))
@@ -65,13 +65,13 @@ def displacements(
 
 
 def stress(triangle: Sequence[Point], corners: Array, young: float, poisson: float) -> Array:
-    """Return the stress of a triangle whose corners are displaced [m], shape (3, 2), as [Pa], shape (3,)."""
+    """Return the stress [Pa], shape (3,), of a triangle whose corners are displaced [m], shape (3, 2)."""
     strain, _ = _strain(triangle)
     return elasticity(young, poisson) @ strain @ corners.ravel()
 
 
 def _strain(triangle: Sequence[Point]) -> tuple[Array, float]:
-    """Return the strains of a triangle per displacement of its corners, shape (3, 6), and twice its area."""
+    """Return a triangle's strains per displacement of its corners, shape (3, 6), and twice its area."""
     (x0, y0), (x1, y1), (x2, y2) = triangle
     double = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)
     b = np.array([y1 - y2, y2 - y0, y0 - y1]) / double

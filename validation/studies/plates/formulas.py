@@ -1,8 +1,8 @@
 """The study `plates`: a plate with a hole and a disc, of glued triangles, beside closed forms and elements.
 
-What is wrong has four parts: the outline is a polygon and its tractions are uniform over an edge (quadratic elements on
-the same outline have that part alone), a triangle has one strain (linear elements on the same triangles have both), and
-glue of finite stiffness gives way. With the closed form u, linear elements u_1 and quadratic ones u_2:
+The error has three parts: the outline is a polygon under tractions that are uniform over an edge (quadratic elements on
+it have that part alone), a triangle has one strain (linear elements on the same triangles have both), and glue of
+finite stiffness gives way. With the closed form u, linear elements u_1 and quadratic ones u_2:
 
     outline u_2/u - 1,     strain u_1/u_2 - 1,     glue u_dda/u_1 - 1.
 """
@@ -35,7 +35,7 @@ SOFT_SCENE = "plates-glue"
 Levels = Sequence[tuple[Scene, Row]]
 
 
-# ---- what is exact --------------------------------------------------------------------------------------------------
+# ---- what is exact ----
 
 
 def exact(case: Scene) -> float:
@@ -49,7 +49,7 @@ def exact(case: Scene) -> float:
 
 
 def exact_stress(case: Scene) -> tuple[float, float]:
-    """Return s_xx and s_yy where the stress is looked at, in closed form [Pa]."""
+    """Return s_xx and s_yy where they are looked at, in closed form [Pa]."""
     plane = case.table(PlaneSection)
     if disc := plane.disc:
         return disc_centre(disc.pressure, math.radians(disc.half_arc))
@@ -67,7 +67,7 @@ def _plate(case: Scene) -> PlateSection:
 def linear(case: Scene, firm: bool = False) -> tuple[float, float]:
     """Return what linear elements on its triangles have, joined by springs if glued softly and not asked for firm glue.
 
-    By how much the points part [m], and the mean s_xx of the triangles with a corner where stress is looked at [Pa].
+    By how much the points part [m], and the mean s_xx of the triangles with a corner where it is looked at [Pa].
     """
     plane = case.table(PlaneSection)
     spring = math.inf if firm or plane.glue == FIRM else plane.glue * plane.young
@@ -100,7 +100,7 @@ def cells_of(case: Scene) -> int:
     return body.cells if body else 0
 
 
-# ---- rows and bands -------------------------------------------------------------------------------------------------
+# ---- rows and bands ----
 
 
 def parts(case: Scene, dda: Row, fem: Row | None = None) -> dict[str, float]:
@@ -141,7 +141,7 @@ def orders(levels: Levels) -> Metrics:
 
 
 def glue_order(levels: Levels) -> Metrics:
-    """Return the order with which glue's error falls with its stiffness."""
+    """Return the order of glue's error in its stiffness."""
     softs = [or_nan(dda.metrics[STATIC]) / linear(case, firm=True)[0] - 1 for case, dda in levels[-2:]]
     glues = [case.table(PlaneSection).glue for case, _ in levels[-2:]]
     return {"order": math.log(abs(softs[0] / softs[1])) / math.log(glues[1] / glues[0])}
@@ -156,20 +156,20 @@ def glued(case: Scene) -> Band:
     """Return the displacement of the same triangles by an own program [m]; band: rounding of two sparse solutions.
 
     Linear elements have no joints: above those stands what firm glue adds, 3 l/2gh. A joint of length l gives way by
-    l/2g of a strain where the block behind it gives way by its height h; a triangle has three.
+    l/2g of a strain, the block behind it by its height h; a triangle has three joints.
     """
     low, high = near(linear(case)[0], ROUNDING)
     return low, high * (1 + gives_way(case))
 
 
 def glued_stress(case: Scene) -> Band:
-    """Return s_xx of the same triangles where it is looked at [Pa]; band: rounding, and what firm glue changes."""
+    """Return s_xx of the same triangles there [Pa]; band: rounding, and what firm glue changes."""
     _, value = linear(case)
     return near(value, ROUNDING + gives_way(case))
 
 
 def gives_way(case: Scene) -> float:
-    """Return by how much firm glue gives way, of a strain; of glue that the elements have too, nothing."""
+    """Return by how much firm glue gives way, of a strain; nothing of glue that the elements have too."""
     plane = case.table(PlaneSection)
     if plane.glue != FIRM:
         return 0.0

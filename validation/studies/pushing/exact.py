@@ -114,7 +114,7 @@ def _sign(problem: Pushing, moment: Moment, block: int) -> int:
 
 
 def _closed_form(problem: Pushing, moment: Moment) -> tuple[State, float]:
-    """Return the motion from a moment on as long as no event ends it, and the span in which to look for one [s]."""
+    """Return the motion from a moment until an event, and the span in which to look for one [s]."""
     free = [
         (problem.drive[i] - moment.signs[i] * problem.resistance[i]) / problem.masses[i] if moment.signs[i] else 0.0
         for i in (0, 1)
@@ -145,7 +145,7 @@ def _closed_form(problem: Pushing, moment: Moment) -> tuple[State, float]:
 
 
 def _conditions(problem: Pushing, moment: Moment) -> Iterator[tuple[str, Callable[[tuple[float, ...]], float]]]:
-    """Yield what ends a piece, and of each a function of the state that is positive until then."""
+    """Yield what ends a piece, each with a function of the state that is positive until then."""
     side = 1 if moment.closed else -1
     yield "opens" if moment.closed else "closes", lambda z: side * (z[0] - z[1] - problem.gap)
     for block, name in enumerate(("upper", "lower")):
@@ -162,7 +162,7 @@ def _conditions(problem: Pushing, moment: Moment) -> Iterator[tuple[str, Callabl
 
 
 def _first_event(problem: Pushing, moment: Moment, state: State, span: float) -> tuple[float, str]:
-    """Return when the first event ends a piece [s], and its name; the span and nothing where none does."""
+    """Return when the first event ends a piece [s], and its name; the span and nothing without one."""
     first = span, ""
     for name, condition in _conditions(problem, moment):
         instant = _first_zero(lambda t, condition=condition: condition(state(t)), span)  # type: ignore[misc]
@@ -172,7 +172,7 @@ def _first_event(problem: Pushing, moment: Moment, state: State, span: float) ->
 
 
 def _first_zero(function: Callable[[float], float], span: float) -> float | None:
-    """Return where a function that begins positive, or at zero and upwards, becomes negative; None where never."""
+    """Return where a function that begins positive, or at zero upwards, becomes negative, or None."""
     before = 0.0
     for k in range(1, SAMPLES + 1):
         t = span * k / SAMPLES
@@ -183,7 +183,7 @@ def _first_zero(function: Callable[[float], float], span: float) -> float | None
 
 
 def _after(problem: Pushing, moment: Moment, event: str) -> Moment:
-    """Return the moment after an event, at which what has become zero is zero."""
+    """Return the moment after an event, what has become zero being zero."""
     if event in ("opens", "closes"):
         return replace(moment, closed=event == "closes")
     if not event:

@@ -1,8 +1,8 @@
 """The study `pushing`: two blocks on a slope, and two wedges, against motions in closed form.
 
-Blocks are rigid, contacts are stated, and what the springs add to a rigid base falls with their stiffness p: a corner
-gives way by W/p at most, so that angles and arms change by its share of the thinnest block, W/(p l). That first
-correction is the band of what is exact for rigid blocks.
+Blocks are rigid, contacts are stated. What the springs add to a rigid base falls with their stiffness p: a corner gives
+way by W/p at most, so that angles and arms change by its share of the thinnest block, W/(p l). This first correction is
+the band of what is exact for rigid blocks.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ SETTLED = 0.5  # s, from which on the weight has grown and its ringing has gone
 STANDS = 1e-3  # m/s: the springs still give way at that speed after two seconds at most
 
 
-# ---- two blocks on a slope ----------------------------------------------------------------------------------------
+# ---- two blocks on a slope ----
 
 
 def problem_of(scene: Scene) -> Pushing:
@@ -50,7 +50,7 @@ def problem_of(scene: Scene) -> Pushing:
 
 
 def way(history: History, block: str, direction: tuple[float, float]) -> Array:
-    """Return the way of a block along a direction of length 1 since the first row [m]."""
+    """Return the way of a block along a unit vector since the first row [m]."""
     x, y = (history.columns[f"{block}.{part}"] for part in "xy")
     along: Array = (x - x[0]) * direction[0] + (y - y[0]) * direction[1]
     return along
@@ -68,7 +68,7 @@ def errors_at_end(scene: Scene, history: History) -> tuple[float, float]:
 
 
 def against_exact(scene: Scene, history: History) -> Metrics:
-    """Return how far both blocks and their centre of mass are from the exact motion at the end [m]."""
+    """Return the same, and that of their centre of mass [m]."""
     upper, lower = errors_at_end(scene, history)
     first, second = problem_of(scene).masses
     push = history.columns["slope_2.4-slope_1.1.normal"]
@@ -83,7 +83,7 @@ def against_exact(scene: Scene, history: History) -> Metrics:
 
 
 def push_at_end(scene: Scene, history: History) -> tuple[float, float]:
-    """Return the push that is left at the end, and that of the exact motion [N]."""
+    """Return the push that is left at the end, and the exact one [N]."""
     problem = problem_of(scene)
     upper, lower, _, _ = at(problem, float(history.time[-1]))
     exact = problem.stiffness * (upper - lower - problem.gap)
@@ -91,7 +91,7 @@ def push_at_end(scene: Scene, history: History) -> tuple[float, float]:
 
 
 def against_rest(scene: Scene, history: History) -> Metrics:
-    """Return the push that is locked in between two blocks at rest [N], and over the exact one, less one."""
+    """Return the push between two blocks at rest [N], and over the exact one, less one."""
     push, exact = push_at_end(scene, history)
     return {"push": push, "exact": exact, "over exact": push / exact - 1}
 
@@ -144,11 +144,11 @@ def _first_order(name: str) -> Band:
     return 1 - frequency * case.time.step, 1 + frequency * case.time.step
 
 
-# ---- two wedges ---------------------------------------------------------------------------------------------------
+# ---- two wedges ----
 
 
 def against_wedges(scene: Scene, history: History) -> Metrics:
-    """Return accelerations and mean forces over those of rigid wedges, less one, and the larger speed at the end."""
+    """Return accelerations and mean forces over those of rigid wedges, less one, and the larger end speed."""
     late = history.time > SETTLED
     ways = {name: way(history, name, (-math.cos(dip), -math.sin(dip))) for name, dip in DIPS.items()}
     measured = {name: 2 * float(np.polyfit(history.time[late], down[late], 2)[0]) for name, down in ways.items()}
@@ -174,12 +174,12 @@ def rigid_wedges(case: Scene) -> Band:
 
 
 def factor_of_safety(case: Scene) -> float:
-    """Return the factor of safety of the wedges of a scene."""
+    """Return the factor of safety of the wedges."""
     return wedges_of(case).factor_of_safety
 
 
 def limit(case: Scene) -> Metrics:
-    """Return the factor of safety of the wedges and their angles of friction [rad], below and between them."""
+    """Return the factor of safety of the wedges and the friction angles [rad], below and between them."""
     wedges = wedges_of(case)
     angles = {"below": math.atan(wedges.below), "between": math.atan(wedges.between)}
     return {"factor": wedges.factor_of_safety, **angles}

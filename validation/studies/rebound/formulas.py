@@ -2,8 +2,8 @@
 
 A rigid block that lands with the speed V returns e V. For Newmark's scheme e is a function of Omega = w_c dt and of the
 phase theta in which the block lands (its overshoot in the first step in contact over V dt), a continuous one of
-straight lines in theta. DDA is held to that map, impact by impact; the map is held to its closed forms; and the
-paper's block, unlocked, shows over time step and springs what follows: solves, switches and energy.
+straight lines in theta. DDA is held to that map, impact by impact; the map to its closed forms; and the paper's block,
+unlocked, shows over time step and springs what follows: solves, switches and energy.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def omega(scene: Scene) -> float:
 
 
 def phase(scene: Scene) -> float:
-    """Return the overshoot of the predictor in the first step in contact over that step's way [-]."""
+    """Return the predictor's overshoot in the first step in contact over that step's way [-]."""
     ways = scene.contact.gap / (-scene.block.velocity * scene.time.step)
     return 1 - (ways - math.floor(ways))
 
@@ -77,7 +77,7 @@ def compared(impacts: Sequence[tuple[Scene, Row]]) -> Metrics:
 
 
 def stiff(scheme: tuple[float, float], finished: Finished) -> Metrics:
-    """Return the statistics of the map on a rigid contact."""
+    """Return the statistics of the map on rigid contact."""
     return dict(zip(PARTS, impact_statistics(*scheme, 1.0, math.inf), strict=True))
 
 
@@ -103,7 +103,7 @@ def ratio(scene: Scene) -> float:
 
 
 def finest() -> list[Scene]:
-    """Return the case of the smallest step for each p: there the exact motion is run."""
+    """Return the case of smallest step for each p, whose exact motion is run."""
     finest_by_ratio: dict[float, Scene] = {}
     for case in cases(MAPS[0]):
         if ratio(case) not in finest_by_ratio or case.time.step < finest_by_ratio[ratio(case)].time.step:
@@ -113,7 +113,7 @@ def finest() -> list[Scene]:
 
 @functools.cache
 def data() -> Mapping[str, Any]:
-    """Return the restitution map for its figure: mean, least and greatest e over Omega, by kind."""
+    """Return the restitution map: mean, least and greatest e over Omega, by kind."""
     grid = np.geomspace(0.05, 1500.0, 61)
     curves = {}
     for kind, scheme in zip(KINDS, ((0.5, 1.0), (0.25, 0.5), (0.5, 1.0), None), strict=True):
@@ -125,7 +125,7 @@ def data() -> Mapping[str, Any]:
 
 
 def exact_cases() -> tuple[tuple[str, str], ...]:
-    """Return the cases of which the exact motion is run too."""
+    """Return the cases whose exact motion is run too."""
     return tuple((case.name, "block-events") for case in finest())
 
 
@@ -135,7 +135,7 @@ def landing_data(case: Scene) -> Metrics:
 
 
 def springs(case: Scene, dda: Row) -> Metrics:
-    """Return p/E, the switches over those of the exact motion, and the energy that the scheme itself has damped."""
+    """Return p/E, the switches over the exact ones, and the energy that the scheme itself has damped."""
     lost, given, switches = (
         or_nan(dda.metrics.get(name)) for name in ("energy.lost_algorithmic", "energy.given", "switches.count")
     )
@@ -144,5 +144,5 @@ def springs(case: Scene, dda: Row) -> Metrics:
 
 
 def own_landing(stiffness_ratio: float, _: Finished) -> Metrics:
-    """Return the restitution of a square block of one strain, without a time step, by p/E."""
+    """Return the restitution of a square block of one strain, exact in time, by p/E."""
     return {"restitution": landing.own_landing(2 * stiffness_ratio).restitution}

@@ -1,8 +1,8 @@
 """The study `response`: what the paper's block answers to a load and to a base that vibrates.
 
 Under its pressure the responses of `dda`, `bar` and `fem` are held to closed forms at the squared frequency that the
-steps make of w, and `fem` to the bar at the error that its mesh has there. On a base that vibrates they are held to
-stepped histories, after the transients.
+steps make of w, and `fem` to the bar at the error of its mesh. On a base that vibrates they are held to stepped
+histories, after the transients.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ DRAWN = np.linspace(1.0, 200.0, 399)  # Hz
 
 @dataclass(frozen=True)
 class Answer:
-    """A way in which the paper's block answers its pressure: a scheme, or exact time."""
+    """A way in which the block answers its pressure: a scheme, or exact time."""
 
     name: str
     words: str
@@ -80,7 +80,7 @@ def answers() -> tuple[Answer, ...]:
     )
 
 
-# ---- under the pressure ---------------------------------------------------------------------------------------------
+# ---- under the pressure ----
 
 
 def row_name(solver: str, frequency: float) -> str:
@@ -89,7 +89,7 @@ def row_name(solver: str, frequency: float) -> str:
 
 
 def _loaded(answer: Answer, solver: str, frequency: float, _: Finished) -> Metrics:
-    """Return amplitudes under the pressure and how far they are from the closed form; of elements also from the bar."""
+    """Return amplitudes under the pressure and their distance from the closed form; of elements also from the bar."""
     reported = answer.reported(solver, frequency)
     closed = answer.closed(solver, frequency)
     values: dict[str, Value] = {}
@@ -104,7 +104,7 @@ def _loaded(answer: Answer, solver: str, frequency: float, _: Finished) -> Metri
 
 
 def _removed(_: Finished) -> Metrics:
-    """Return the share of the displacement near the first frequency that the step takes."""
+    """Return the share of the displacement near resonance that the step takes."""
     exact, stepped, _average = (abs(one.reported("dda", RESONANCE).columns[DISPLACEMENT][0]) for one in answers())
     return {"removed": 1 - stepped / exact}
 
@@ -136,14 +136,14 @@ def mesh_gates() -> Iterator[Gate]:
                 yield gate(answer.name, row_name("fem", f), f"{part}.mesh", about(mesh, half), why)
 
 
-# ---- stepped on a base that vibrates --------------------------------------------------------------------------------
+# ---- stepped on a base that vibrates ----
 
 
 def steady(finished: Finished, scene: Scene, solver: str, frequency: float) -> dict[str, complex]:
     """Return the amplitudes of the last steps of a history per metre of the base's motion.
 
-    The frequencies of the record are whole numbers of periods in the window, so that the least-squares fit of all of
-    them, and of a shift, is a sum each.
+    The window holds whole periods of the record's frequencies, so that the least-squares fit of all of them, and of a
+    shift, is a sum each.
 
     Raises
     ------
@@ -207,7 +207,7 @@ def remaining_transients(scene: Scene, solver: str) -> float:
     return float(slowest ** (scene.time.steps - WINDOWS[_record(scene)]) + scene.time.steps * EPS + SOLVED)
 
 
-# ---- the damping that a step hides ----------------------------------------------------------------------------------
+# ---- the damping that a step hides ----
 
 
 def _hidden(frequency: float, finished: Finished) -> Metrics:
@@ -239,7 +239,7 @@ def damping_gates() -> Iterator[Gate]:
         yield gate(DAMPING, row, "damping.response", about(exact, float(closed_form.band[at])), why)
 
 
-# ---- viscous damping beside that of the step ------------------------------------------------------------------------
+# ---- viscous damping beside that of the step ----
 
 
 def viscous_damping_ratio(scene: Scene) -> float:
@@ -265,12 +265,12 @@ def viscous(case: Scene) -> Band:
     return about(viscous_damping_ratio(case), 1e-12)
 
 
-# ---- the study ------------------------------------------------------------------------------------------------------
+# ---- the study ----
 
 
 @functools.cache
 def derived() -> DerivedRows:
-    """Return the rows under the pressure, of the steps, and of the damping."""
+    """Return the rows: under the pressure, of the steps, of the damping."""
     rows = []
     for answer in answers():
         for solver in ("dda", "fem", "bar"):

@@ -39,7 +39,7 @@ def swing(scene: Scene, history: History) -> Metrics:
 
 
 def passage(scene: Scene, history: History) -> Metrics:
-    """Return the greatest tilt over that of a rigid block, or the time at which the block passes over its corner."""
+    """Return the greatest tilt over a rigid block's, or the time at which the block passes over its corner."""
     rotation = history.columns["rotation"]
     exact = after_pulse(scene)
     if overturns(scene):
@@ -48,7 +48,7 @@ def passage(scene: Scene, history: History) -> Metrics:
 
 
 def rigid(scene: Scene) -> Metrics:
-    """Return the rigid block: its shape and its tilt, or the pulse over the least one that overturns it."""
+    """Return the rigid block: shape and tilt, or the pulse over the least one that overturns it."""
     block = rectangle(scene)
     values = {"slenderness": block.height / block.width, "tipping": block.alpha}
     if scene.name.startswith(PULSED):
@@ -62,20 +62,20 @@ def rigid(scene: Scene) -> Metrics:
 
 
 def overturns(scene: Scene) -> bool:
-    """Tell whether the record of the base overturns the rigid block."""
+    """Tell whether the record overturns the rigid block."""
     block = rectangle(scene)
     return PUSH / block.gravity > block.pulse_threshold(DURATION)
 
 
 def after_pulse(scene: Scene) -> Callable[[float], float]:
-    """Return the peak [rad], or the time of passing over the corner [s], of a rigid block by the size of the pulse."""
+    """Return the peak [rad], or the time over the corner [s], of a rigid block by the size of the pulse."""
     block = rectangle(scene)
     sought = block.pulse_overturning if overturns(scene) else block.pulse_peak
     return lambda size: sought(size * PUSH / block.gravity, DURATION)
 
 
 def quarter_period(case: Scene) -> Band:
-    """Return the quarter period of a block that is released from a tilt, over that of a rigid block."""
+    """Return the quarter period of a block released from a tilt, over that of a rigid block."""
     block = rectangle(case)
     tilt = math.radians(case.block.tilt)
     line = case.time.step**2 * block.rate2 * math.sin(block.alpha) / block.landing_rate(tilt)

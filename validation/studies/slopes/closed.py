@@ -27,7 +27,7 @@ def newmark_step(stepping: Stepping, omega: float) -> Array:
 
 
 def normal_ringing_error(scene: Scene, stiffness: float, step: float, start: float = 0.05, end: float = 0.2) -> float:
-    """Return the largest error of a sliding block between two times, over its exact way, as its ringing makes it.
+    """Return the largest error by ringing of a sliding block between two times, over its exact way.
 
     The block does not turn and stays closed: u_t = a t^2/2 - tan(phi) u_n, with u_n the normal ringing of the rigid
     block on its springs under its weight by the scheme.

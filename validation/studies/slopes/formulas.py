@@ -64,7 +64,7 @@ def acceleration(scene: Scene, history: History) -> float:
 
 
 def identity(scene: Scene, history: History) -> Metrics:
-    """Return what the sliding identity leaves, and how far the block is ahead [m]."""
+    """Return the residual of the sliding identity, and the block's lead [m]."""
     if scene.name.startswith((THRESHOLD, MANUAL)):  # shear springs stick at first: only the rate is known
         return {"acceleration": acceleration(scene, history)}
     free, _ = friction.free_motion(scene, friction.sliding_acceleration(scene))
@@ -74,7 +74,7 @@ def identity(scene: Scene, history: History) -> Metrics:
 
 
 def ringing(scene: Scene, history: History) -> Metrics:
-    """Return the largest error of a sliding block over its exact way, from a start on."""
+    """Return the largest error of a sliding block over its exact way, from a start."""
     way = friction.sliding_acceleration(scene) * history.time**2 / 2
     late = history.time >= RINGS_FROM - closed_forms.TOLERANCE
     return {"error": np.max(np.abs(history.columns["horizontal_displacement"] / way - 1)[late])}
@@ -96,7 +96,7 @@ def late_friction() -> Metrics:
 
 
 def discounted() -> Metrics:
-    """Return what gg = 0.98 a step is: a rate, damping ratios, and the way that a shaken block keeps."""
+    """Return what gg = 0.98 a step is: a rate, damping ratios, and the way kept by a shaken block."""
     gg = 0.98
     numbers = {"frequency of 2 % times dt": -math.log(gg) / (2 * 0.02) / (2 * math.pi)}
     for step in (1e-2, 5e-3, 2.5e-3, 1e-3):
@@ -112,21 +112,21 @@ def discounted() -> Metrics:
 
 
 def against_rigid(scene: Scene, history: History) -> Metrics:
-    """Return the slide over the base at the end, and how far it ever is from that of a rigid mass [m]."""
+    """Return the slide over the base at the end, and its greatest distance from a rigid mass's [m]."""
     slide = (history.columns["slide_m"] + history.columns["slide_n"]) / 2
     rigid = rigid_slide(scene, smooth=scene.name.startswith(QUAKE)).slide
     return {"slide": slide[-1], "largest difference": np.max(np.abs(slide - rigid))}
 
 
 def threshold(runs: Runs) -> Metrics:
-    """Return the slope at which the sliding acceleration of two cases passes through zero [deg]."""
+    """Return the slope at which the sliding acceleration of two cases is zero [deg]."""
     below, above = itertools.starmap(acceleration, runs)
     low, high = (case.load.slope for case, _ in runs)
     return {"angle": low - below * (high - low) / (above - below) if above > below else "undefined"}
 
 
 def offset(case: Scene) -> Band:
-    """Return the way by which springs that give put a sliding block ahead [m]."""
+    """Return by how much springs that give put a sliding block ahead [m]."""
     return near(friction.penalty_offset(case), SETTLED)
 
 
@@ -143,7 +143,7 @@ def sliding_rate(case: Scene) -> Band:
 
 
 def ringing_way(case: Scene) -> Band:
-    """Return the error by what a block rings on stiff springs; its own strain settles with them, p h / (2 E a) more."""
+    """Return the error by ringing on stiff springs; its own strain settles with them, p h / (2 E a) more."""
     width, height = size(case)
     modulus, _ = moduli(case)
     own_strain = case.contact.stiffness * height / (2 * modulus * width)
@@ -159,12 +159,12 @@ def lost_energy(case: Scene) -> Band:
 
 
 def late_waves(case: Scene) -> Band:
-    """Return by how much points of a base that begin to slip late change the run-out."""
+    """Return by how much points of a base that slip late change the run-out."""
     return about(0.0, 2 * size(case)[1] / math.sqrt(moduli(case)[0] / case.block.density) / case.time.duration)
 
 
 def shaken(case: Scene) -> Bands:
-    """Return the slide on a base that shakes, and its distance from that of a rigid mass [m]."""
+    """Return the slide on a base that shakes, and its distance from a rigid mass's [m]."""
     resisted = friction.coefficient(case) * friction.across(case)
     stretch = case.block.mass * resisted / (2 * case.contact.shear)
     late = resisted * case.time.step / (2 * RATE)  # a phase that begins a step late, until the next one
@@ -215,13 +215,13 @@ def start(case: Scene, dda: Row) -> Metrics:
 
 
 def beside_rigid(case: Scene) -> Metrics:
-    """Return the slide of a rigid mass at the end, and by how much a block may differ from it [m]."""
+    """Return the slide of a rigid mass, and by how much a block may differ from it [m]."""
     low, high = (in_an_earthquake if case.name.startswith(QUAKE) else shaken)(case)["slide"]
     return {"slide": (low + high) / 2, "allowed": (high - low) / 2}
 
 
 def data() -> Mapping[str, Any]:
-    """Return the closed forms that are drawn: displacements over time, and what a drag leaves after a second."""
+    """Return closed forms to draw: displacements over time, and what a drag leaves after a second."""
     free = []
     *_, without_drag = cases(SLIDING)
     for case in (without_drag, *cases(DRAG)):

@@ -18,7 +18,7 @@ from validation.theory.spectra import EPS
 STRAINS = ("ex", "ey", "gxy")
 
 
-# ---- blocks that spin -----------------------------------------------------------------------------------------------
+# ---- blocks that spin ----
 
 
 def errors_of(scene: Scene, history: History) -> dict[str, float]:
@@ -28,13 +28,13 @@ def errors_of(scene: Scene, history: History) -> dict[str, float]:
 
 
 def balance(history: History) -> float:
-    """Return what the account of energies leaves at most, over the kinetic energy of the start."""
+    """Return the largest residual of the account of energies, over the first kinetic energy."""
     columns = history.columns
     return float(np.max(np.abs(columns["energy.balance"])) / columns["energy.kinetic"][0])
 
 
 def accounts(scene: Scene, history: History) -> dict[str, Value]:
-    """Return how far the angular momentum goes from that of the start, and the balance of energies over the first."""
+    """Return how far angular momentum goes from its start, and the balance of energies."""
     momentum = history.columns["momentum.angular"] / spinning_of(scene).momentum
     return {"momentum": np.max(np.abs(momentum - 1)), "balance": balance(history)}
 
@@ -45,7 +45,7 @@ def against_motion(scene: Scene, history: History) -> Metrics:
 
 
 def against_steady(scene: Scene, history: History) -> Metrics:
-    """Return the strains at the end, the area and the rate of the angle there over those of a steady spin."""
+    """Return strains at the end, and area and rate of angle over those of a steady spin."""
     ex, ey, gxy = (float(history.columns[f"block.{name}"][-1]) for name in STRAINS)
     exact = spinning_of(scene)
     stretch = 1 + exact.steady_strain
@@ -98,11 +98,11 @@ def steady(case: Scene) -> Bands:
     return {"ex": strain, "ey": strain, "area": (-relative, relative), "rate": (-last, last)}
 
 
-# ---- blocks that fly and slide --------------------------------------------------------------------------------------
+# ---- blocks that fly and slide ----
 
 
 def against_flight(scene: Scene, history: History) -> Metrics:
-    """Return how far a block in flight is from its parabola and its even turn, over the largest way and angle."""
+    """Return how far a flying block is from its parabola and even turn, over the largest way and angle."""
     (block,) = moving_blocks(scene)
     t = history.time - history.time[0]
     started = history.time[0]
@@ -129,7 +129,7 @@ def pitch(scene: Scene) -> float:
 
 
 def against_stop(scene: Scene, history: History) -> Metrics:
-    """Return how far the centre is from its parabola before its foot stops [m], and its way at the end [m]."""
+    """Return how far the centre is from its parabola before its foot stops, and its way at the end [m]."""
     slide = slide_of(scene)
     slowing = slide.friction * slide.gravity
     t = history.time
@@ -140,7 +140,7 @@ def against_stop(scene: Scene, history: History) -> Metrics:
 
 
 def closed_stop(case: Scene) -> Metrics:
-    """Return the way to rest of the rigid block, and by how much its centre returns on springs [m]."""
+    """Return the way to rest of the rigid block, and the return of its centre on springs [m]."""
     slide = slide_of(case)
     return {"distance": slide.stopping_distance, "back": pitch(case) * slide.height / 2}
 
@@ -164,11 +164,11 @@ def distance(case: Scene) -> Band:
     return foot - within, foot + within
 
 
-# ---- blocks on a ledge ----------------------------------------------------------------------------------------------
+# ---- blocks on a ledge ----
 
 
 def turn_at_end(scene: Scene, history: History) -> tuple[float, float]:
-    """Return the turn, clockwise, and that of the rigid block, at the end [rad]."""
+    """Return the turn, clockwise, and the rigid block's, at the end [rad]."""
     return -float(history.columns["block.angle"][-1]), slide_of(scene).turn(float(history.time[-1]))
 
 
@@ -183,9 +183,9 @@ def against_ledge(scene: Scene, history: History) -> Metrics:
 
 
 def extrapolated(runs: Runs) -> Metrics:
-    """Return what two stiffnesses extrapolate to, over the rigid block's turn and less one; also over the next term.
+    """Return what two stiffnesses extrapolate to, over the rigid block's turn, less one; also over the next term.
 
-    The turn is that of the rigid block and a term in 1/p, which both stiffnesses tell; the next term is its square.
+    The turn is the rigid block's and a term in 1/p, which both stiffnesses tell; the next term is its square.
     """
     (first, exact), (second, _) = itertools.starmap(turn_at_end, runs)
     soft, stiff = (stiffness_of(case) for case, _ in runs)
@@ -196,6 +196,6 @@ def extrapolated(runs: Runs) -> Metrics:
 
 
 def stops(case: Scene) -> Band:
-    """Return how far from the rigid block's place it comes to rest [m]: no more than it sinks, W/2p."""
+    """Return the distance of its rest from the rigid block's [m]: no more than it sinks, W/2p."""
     half = weight_over_stiffness(case) / 2
     return -half, half

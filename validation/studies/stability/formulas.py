@@ -38,7 +38,7 @@ LOST = {(0.5, 1e21): 2e-5, (0.5, 1e24): 0.04, (0.25, 1e21): 9e-4, (0.25, 1e24): 
 
 
 def conditional(alpha: float, delta: float) -> bool:
-    """Whether a scheme has a limit: unconditional stability asks 2 alpha >= delta >= 1/2."""
+    """Whether a scheme has a limit: unconditionally stable is 2 alpha >= delta >= 1/2."""
     return not 2 * alpha >= delta >= 0.5
 
 
@@ -55,7 +55,7 @@ def scheme_scene(alpha: float, delta: float, start: str, sweep: Mapping[str, Any
 
 
 def matrix() -> Iterator[Scene]:
-    """Yield the matrix: every scheme from the paper's start, and from the consistent one at gg = 1."""
+    """Yield every scheme from the paper's start, and from the consistent one at gg = 1."""
     sweep = {"contact.stiffness": list(STIFFNESS), "time.step": list(STEPS)}
     for alpha, delta in SCHEMES:
         yield scheme_scene(alpha, delta, "zero", sweep | {"time.gg": list(DISCOUNTS)})
@@ -76,7 +76,7 @@ def factors(names: Sequence[str]) -> Iterator[Scene]:
 
 
 def gates_of(scenes: Sequence[Scene]) -> Iterator[Gate]:
-    """Yield the gates of the cases of some scenes."""
+    """Yield the gates of the cases of scenes."""
     for scene in scenes:
         for case in scene.expand():
             if case.load.pressure == 0:
@@ -108,7 +108,7 @@ def digits(case: Scene) -> Iterator[Gate]:
 
 
 def grown(case: Scene) -> Iterator[Gate]:
-    """Yield the gate on the growth of a run beyond its limit."""
+    """Yield the gate on the growth beyond the limit."""
     rate = spectra.spectral_radius(case, spectra.contact_frequency(case))
     if spectra.spectral_radius(case, spectra.dda_frequency(case)) > 0.9 * rate:
         return  # two modes grow alike: which one leads after 300 steps is no matter of the scheme
@@ -118,13 +118,13 @@ def grown(case: Scene) -> Iterator[Gate]:
 
 @functools.cache
 def all_scenes() -> tuple[Scene, ...]:
-    """Return the matrix, and the extremes of every other datum alone."""
+    """Return the matrix, and the extremes of every other datum."""
     return (*matrix(), *factors(list(FACTORS)))
 
 
 @functools.cache
 def corners() -> tuple[Scene, ...]:
-    """Return the corners of the matrix: each start with one scheme, and an explicit one; and no load."""
+    """Return the corners of the matrix: each start with one scheme, an explicit one, and no load."""
     sweep = {"contact.stiffness": [1.0, 1e21, 1e24], "time.step": [1e-9, 1e-3, 1e3]}
     schemes = ((0.5, 1.0, "zero"), (0.25, 0.5, "consistent"), (0.0, 0.5, "zero"))
     return (*(scheme_scene(*corner, sweep) for corner in schemes), *factors(["pressure"]))

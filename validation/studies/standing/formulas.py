@@ -56,7 +56,7 @@ def unbalanced(scene: Scene, history: History) -> Metrics:
     return {"share": share, "way": float(way), "result": "falls" if share > REST else "stands"} | limit_of(scene)
 
 
-# ---- limits -------------------------------------------------------------------------------------------------------
+# ---- limits ----
 
 
 def limit_of(scene: Scene) -> dict[str, Value]:
@@ -79,7 +79,7 @@ def _keyed(plane: PlaneSection) -> tuple[float, float]:
 
 
 def _dip(plane: PlaneSection) -> float:
-    """Return by how much gravity is tilted from the vertical [rad]."""
+    """Return the tilt of gravity from the vertical [rad]."""
     return math.atan2(plane.gravity[0], -plane.gravity[1])
 
 
@@ -92,7 +92,7 @@ def _stepped(plane: PlaneSection) -> tuple[float, float]:
 def _arch(plane: PlaneSection) -> tuple[float, float]:
     """Least thickness by the linear program, and what springs ask for besides: 1.5 rho g R / p of the radius R.
 
-    That is what an independent program found of 24 voussoirs; 1/p is so small here that a third of it would not show.
+    An independent program found that for 24 voussoirs; 1/p is so small here that a third of it would not show.
     """
     arch = plane.arch[0]
     stiffness = plane.contact.stiffness if plane.contact else math.inf
@@ -102,7 +102,7 @@ def _arch(plane: PlaneSection) -> tuple[float, float]:
 
 
 class Bracket(NamedTuple):
-    """What columns with friction between them ask for, by the recursion and by the linear program."""
+    """What columns with friction between them ask for, by recursion and linear program."""
 
     recursion: float  # a height [m], or tan(phi)
     program: float
@@ -111,7 +111,7 @@ class Bracket(NamedTuple):
 
 
 def bracket_of(plane: PlaneSection) -> Bracket:
-    """Return the greatest heights on a flat base, or the least friction of the book's columns, which have steps."""
+    """Return the greatest heights on a flat base, or the least friction of the book's stepped columns."""
     columns = plane.columns[0]
     dip = math.radians(columns.dip)
     mu = friction_of(plane)
@@ -129,7 +129,7 @@ def _bracket(plane: PlaneSection) -> tuple[float, float]:
 
 
 def settings(scene: Scene, history: History) -> Metrics:
-    """Return how columns with friction between them rest, beside both limits and the springs that they have."""
+    """Return how columns with friction between them rest, beside both limits and their springs."""
     plane = scene.table(PlaneSection)
     bounds = bracket_of(plane)
     return {
@@ -176,7 +176,7 @@ LIMITS: Mapping[str, tuple[str, Callable[[PlaneSection], tuple[float, float]]]] 
 
 
 def verdict(case: Scene) -> Band:
-    """Return the unbalanced share of the weight: none below the limit, above it at least a tenth of the excess."""
+    """Return the unbalanced share of the weight: none below the limit, above at least a tenth of the excess."""
     beyond = or_nan(limit_of(case)["beyond"])
     return (LEVER * min(beyond, 1.0), 1.0) if beyond > 0 else (0.0, REST)
 
@@ -187,14 +187,13 @@ def bracket(case: Scene) -> Band | None:
     return verdict(case) if bounds.over_recursion < 0.81 or bounds.over_program > 1 else None
 
 
-# ---- columns that turn ----------------------------------------------------------------------------------------------
+# ---- columns that turn ----
 
 
 def turning(scene: Scene, history: History) -> Metrics:
     """Return the angular acceleration of keyed columns over that of rigid ones, less one, at the toe and the top.
 
-    Both from a parabola through the second half of the history: what the springs give in the first instants is a
-    velocity.
+    From a parabola through the second half of the history: what springs give in the first instants is a velocity.
     """
     late = history.time > history.time[-1] / 2
     times = history.time[late]
@@ -209,7 +208,7 @@ def turning(scene: Scene, history: History) -> Metrics:
 
 
 def turned_columns(scene: Scene, times: Array) -> Array:
-    """Return by how much rigid columns have turned together from rest, all about their lower corners [rad]."""
+    """Return the turn of rigid columns together from rest, all about their lower corners [rad]."""
     plane = scene.table(PlaneSection)
     heights = np.array(_heights(plane))
     dip = _dip(plane)
@@ -228,8 +227,8 @@ def turned_columns(scene: Scene, times: Array) -> Array:
 def overlap_of_turning(case: Scene) -> Band:
     """Return what the second order of a turn th changes: 6 th dx/2y of its acceleration, y the lowest column.
 
-    Columns that turn by th come nearer by dx th^2/2, so that a column turns by dx th^2/2y more than the next one; in
-    th^2 ~ t^4 a second derivative is six times as large.
+    Columns that turn by th come nearer by dx th^2/2, so that one turns by dx th^2/2y more than the next; in th^2 ~ t^4
+    a second derivative is six times as large.
     """
     plane = case.table(PlaneSection)
     turn = float(turned_columns(case, np.array([case.time.duration]))[-1])
@@ -237,7 +236,7 @@ def overlap_of_turning(case: Scene) -> Band:
     return -half, half
 
 
-# ---- three blocks that overhang -------------------------------------------------------------------------------------
+# ---- three blocks that overhang ----
 
 
 def seats(runs: Runs) -> Metrics:
@@ -274,11 +273,11 @@ def second_correction() -> Band:
     return -(first**2), first**2
 
 
-# ---- half a truss ---------------------------------------------------------------------------------------------------
+# ---- half a truss ----
 
 
 def at_rest(scene: Scene, history: History) -> Metrics:
-    """Return turn and forces at the end over those of the closed form, less one; and the load over its limit."""
+    """Return turn and forces at the end over the closed form, less one; and the load over its limit."""
     truss = half_truss(scene)
     load = -2 * sum(one.force[1] for one in scene.table(PlaneSection).load if one.force)
     weight = truss.mass * truss.gravity
@@ -323,7 +322,7 @@ def motion_errors(scene: Scene, history: History) -> dict[str, float]:
 
 
 def against_motion(scene: Scene, history: History) -> Metrics:
-    """Return the errors at the end, and what the account of energies leaves over the work of the weight."""
+    """Return these errors, and the residual of the account of energies over the work of the weight."""
     columns = history.columns
     balance = float(np.max(np.abs(columns["energy.balance"])) / np.max(np.abs(columns["energy.load"])))
     errors = motion_errors(scene, history)
@@ -331,7 +330,7 @@ def against_motion(scene: Scene, history: History) -> Metrics:
 
 
 def drop_orders(runs: Runs) -> Metrics:
-    """Return the orders of the errors from the second finest step to the finest."""
+    """Return the orders of the errors of the two finest steps."""
     errors = list(itertools.starmap(motion_errors, runs))
     return {name: math.log2(abs(errors[-2][name] / errors[-1][name])) for name in errors[-1]}
 

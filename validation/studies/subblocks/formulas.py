@@ -1,4 +1,4 @@
-"""The study of sub-blocks: what cutting a block into glued sub-blocks buys, and how rocking differs by model."""
+"""The study of sub-blocks: what cutting into glued sub-blocks buys, and how rocking differs by model."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def rocking_frequency(case: Scene) -> Band:
 
 
 def cut(case: Scene) -> Metrics:
-    """Return how many sub-blocks stand on each other, and the width of the patches that carry elements [m]."""
+    """Return the number of sub-blocks on each other, and the width of patches that carry elements [m]."""
     _, n = case.block.cuts
     return {"n": n, "patch": case.fem.patch_width or case.block.base_length}
 

@@ -1,4 +1,4 @@
-"""The study `toppling`: the cases of the manuals of block codes as numbers, and the growth by first-order rotation.
+"""The study `toppling`: the cases of the manuals of block codes, and the growth by first-order rotation.
 
 A block on a slope stands, slides or topples: with friction a tenth of a degree above and below the slope, with half of
 the friction that it needs, and as a tower whose centroid stands beyond its lower corner.
@@ -44,7 +44,7 @@ def static(scene: Scene, history: History) -> Metrics:
 def slide(scene: Scene, history: History) -> Metrics:
     """Return what the sliding identity leaves, and the run-out over that of a rigid block.
 
-    While both corners slip or are open u + tan(phi) v is a t^2 / 2, free motion under a = g (sin b - tan(phi) cos b).
+    While both corners slip or are open u + tan(phi) v is a t^2 / 2, a = g (sin b - tan(phi) cos b).
     """
     u = history.columns["horizontal_displacement"]
     v = history.displacement
@@ -56,7 +56,7 @@ def slide(scene: Scene, history: History) -> Metrics:
 
 
 def fall(scene: Scene, history: History) -> Metrics:
-    """Return when a block has turned by `TURN` over a rigid one's time, its greatest turn, and its area."""
+    """Return the time of a turn by `TURN` over a rigid block's, the greatest turn, and the area."""
     rotation = -history.columns["rotation"]
     values = {"turned": np.max(np.abs(rotation))}
     if beyond(scene) > 0:
@@ -70,18 +70,18 @@ def fall(scene: Scene, history: History) -> Metrics:
 
 
 def run_out(case: Scene) -> Band:
-    """Return the run-out of a block that slides, over that of a rigid block."""
+    """Return the run-out of a sliding block over a rigid one's."""
     sliding_distance = sliding_acceleration(case) * case.time.duration**2 / 2
     return 1.0, 1 + coefficient(case) * settlement(case) / sliding_distance
 
 
 def standing(case: Scene) -> Band:
-    """Return the turn of a tower that stands when gravity begins to act [rad]."""
+    """Return the turn of a standing tower when gravity begins [rad]."""
     return 0.0, 2 * settlement(case) / rectangle(case).width
 
 
 def from_rest(case: Scene) -> Band:
-    """Return the time in which a tower falls, over that of a rigid block."""
+    """Return the time in which a tower falls, over a rigid block's."""
     exact = rectangle(case).fall_time(beyond(case), TURN)
     return 1 - lifted(case) / exact, 1 + straight(case)
 
@@ -105,7 +105,7 @@ def straight(scene: Scene) -> float:
 
 
 def let_go(case: Scene) -> Bands:
-    """Return time, area and growth of a tower that is released on its lower corner, by its kind of rotation."""
+    """Return time, area and growth of a tower released on its lower corner, by its kind of rotation."""
     block = rectangle(case)
     grown = growth(case)
     strain = 4 * case.block.density * block.gravity * block.height / case.block.young
@@ -130,7 +130,7 @@ def growth(scene: Scene) -> float:
 
 
 def data() -> Mapping[str, Any]:
-    """Return the fall of the rigid tower that is released on its corner, over the time that is run."""
+    """Return the fall of the rigid tower from its corner, over the time that is run."""
     (case,) = cases("toppling-fall")
     block = rectangle(case)
     last = brentq(lambda turn: block.fall_time(beyond(case), turn) - case.time.duration, 1e-6, math.pi / 2)

@@ -28,11 +28,11 @@ TOUCHED = 1e-9  # m/s: a change of velocity by which a contact has pressed
 CORNERS = "corner-corner"  # as the query calls it
 
 
-# ---- who touches whom, and when -------------------------------------------------------------------------------------
+# ---- who touches whom, and when ----
 
 
 def query(scene: Scene, row: Row) -> Metrics:
-    """Return what `dda.first_contact` says beside the roots: how much later, foot apart, and another pair or none."""
+    """Return what `dda.first_contact` says beside the roots: lateness, foot apart, and another pair or none."""
     bodies = polygons(scene)
     first, second = ((*body.centroid, 0.0, *body.velocity, body.spin) for body in bodies)
     outlines = bodies[0].corners, bodies[1].corners
@@ -50,7 +50,7 @@ def query(scene: Scene, row: Row) -> Metrics:
 
 
 def motion(scene: Scene, history: History) -> Metrics:
-    """Return when the first contact pressed, in steps after the touch, and how far beside its normals [rad]."""
+    """Return when the first contact pressed, in steps after the touch, and its angle to its normals [rad]."""
     columns = history.columns
     u, v = (columns[f"A.{part}"] - columns[f"A.{part}"][0] for part in ("vx", "vy"))
     pressed = np.flatnonzero(np.hypot(u, v) > TOUCHED)
@@ -86,8 +86,8 @@ def turned_in_a_step(case: Scene) -> Band:
 def first_step(case: Scene) -> Band | None:
     """Return the steps after the touch at which the first force is there: within one.
 
-    Of a corner that meets a corner within two: at the first step's end it is not yet in front of either edge, and
-    which of them is taken the next step decides.
+    Of corner on corner within two: at the first step's end it is not yet in front of either edge, and which is taken
+    the next step decides.
     """
     touch = touch_of(case)
     if touch is None:
@@ -95,11 +95,11 @@ def first_step(case: Scene) -> Band | None:
     return -1e-9, 1.0 + 1e-9 + (not 0 < round(touch.foot, 9) < 1)
 
 
-# ---- a square that lands on two corners -----------------------------------------------------------------------------
+# ---- a square that lands on two corners ----
 
 
 def landing(scene: Scene, history: History) -> Metrics:
-    """Return how far velocity and spin after it are from those of the closed pieces, over the speed of landing."""
+    """Return the distance of velocity and spin after it from the closed pieces, over the landing speed."""
     first, second = polygons(scene)
     columns = history.columns
     overlap_left = float(np.min(first.corners[:, 0])) + first.centroid[0]
@@ -145,18 +145,18 @@ def small_turn(case: Scene) -> Band:
     return -deep - own, deep + own
 
 
-# ---- a rectangle that lands on a corner -----------------------------------------------------------------------------
+# ---- a rectangle that lands on a corner ----
 
 
 def rebound(scene: Scene) -> tuple[FallingRectangle, Rebound]:
-    """Return the rectangle of a scene, and how it leaves springs."""
+    """Return the rectangle, and how it leaves springs."""
     contact = contact_of(scene)
     body = falling(scene)
     return body, on_springs(body, contact.stiffness, contact.shear, contact.friction_coefficient, scene.time.duration)
 
 
 def against_springs(scene: Scene, history: History) -> Metrics:
-    """Return errors of the velocities after the impact beside the exact motion on the same springs, and impulses."""
+    """Return errors of the velocities after the impact beside the exact ones on these springs, and impulses."""
     body, exact = rebound(scene)
     columns = history.columns
     vx, vy, spin = (float(columns[f"rectangle.{part}"][-1]) for part in ("vx", "vy", "spin"))
@@ -188,7 +188,7 @@ def rigid(scene: Scene) -> dict[str, float]:
 
 
 def in_the_limit(runs: Runs) -> Metrics:
-    """Return the smooth impulse over that of a rigid impact, less one: on both springs, and extrapolated in p^-1/2."""
+    """Return the smooth impulse over a rigid one, less one: on both springs, and extrapolated in p^-1/2."""
     soft, stiff = (or_nan(against_springs(*run)["J_n"]) / smooth_limit() - 1 for run in runs)
     first, second = (stiffness_of(case) for case, _ in runs)
     root = math.sqrt(second / first)
@@ -196,12 +196,12 @@ def in_the_limit(runs: Runs) -> Metrics:
 
 
 def smooth_limit() -> float:
-    """Return the impulse of the rigid impact without friction [N s]."""
+    """Return the rigid impulse without friction [N s]."""
     return rigid(next(iter(cases(STIFF))))["rigid J_n"]
 
 
 def square_of_the_first() -> Band:
-    """Return what an extrapolation in p^-1/2 leaves: the square of the correction on the softer springs, exactly."""
+    """Return what extrapolating in p^-1/2 leaves: the square of the correction on the softer springs, exactly."""
     _, exact = rebound(next(iter(cases(STIFF))))
     half = (exact.impulse[1] / smooth_limit() - 1) ** 2
     return -half, half

@@ -28,14 +28,14 @@ def usual_site() -> Scene:
 
 
 def scenes() -> tuple[str | Scene, ...]:
-    """Return the scenes: those of the library, joints for every resolution, the site twice."""
+    """Return the scenes: of the library, joints for every resolution, the site twice."""
     joints = {wave.scene.name: wave.scene for wave in rows.jointed()}
     return "waves-blocks", *rows.OTHERS, *joints.values(), "waves-base", SITE, usual_site()
 
 
 @functools.cache
 def derived() -> DerivedRows:
-    """Return the rows that are measured on histories."""
+    """Return the rows measured on histories."""
     needs = tuple((wave.scene.name, wave.solver) for wave in rows.averaged())
     return (
         *(wave.row(rows.travelled) for wave in rows.travelling()),
@@ -46,7 +46,7 @@ def derived() -> DerivedRows:
 
 
 def gates() -> tuple[Gate, ...]:
-    """Return the gates on waves that are measured."""
+    """Return the gates on measured waves."""
     return (*rows.travelling_gates(), *rows.joint_gates(), rows.order_gate(), *rows.base_gates())
 
 
@@ -58,7 +58,7 @@ def fem_too() -> tuple[tuple[str, str], ...]:
 
 
 def closed(case: Scene) -> Metrics:
-    """Return c dt/h of the lowest layer, its glue over that of its own blocks, and the weights of the scheme."""
+    """Return c dt/h of the lowest layer, its glue over its own blocks', and the weights of the scheme."""
     column = column_of(case)
     layer = column.layer[0]
     height = layer.thickness / layer.blocks

@@ -1,7 +1,7 @@
 """Waves in the histories of a column: wavenumber, what a joint lets through, what a base sends back.
 
-All of it rests on the spectrum of pulses that have come and gone (`validation.metrics.transform`): at each frequency
-the steps' own law holds without a transient, and a field is one wave up and one wave down.
+All rests on the spectrum of pulses that have come and gone (`validation.metrics.transform`): at each frequency the
+steps' own law holds without a transient, and a field is one wave up and one wave down.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class Guide:
 
     @classmethod
     def of(cls, scene: Scene, blocks: float) -> Guide:
-        """Return the guide of a scene at a number of blocks a wavelength of the continuum."""
+        """Return the guide of a scene at so many blocks a wavelength of the continuum."""
         section = column_of(scene)
         layer = section.layer[0]
         height = layer.thickness / layer.blocks
@@ -48,12 +48,12 @@ class Guide:
         return complex(self.column.wavenumber(self.stepping.squared_frequency(self.omega)))
 
     def speed_error_and_share(self, k: complex, wavelengths: float = 10.0) -> tuple[float, float]:
-        """Return the error of the phase speed of a wavenumber, and the share left after some wavelengths."""
+        """Return the error of a wavenumber's phase speed, and the share left after some wavelengths."""
         distance = wavelengths * 2 * np.pi * self.speed / self.omega
         return self.omega / k.real / self.speed - 1, float(np.exp(-abs(k.imag) * distance))
 
     def amplitudes(self, history: History, names: Sequence[str]) -> list[complex]:
-        """Return the spectrum of columns of a history at the frequency."""
+        """Return the spectrum of columns at the frequency."""
         return [complex(spectrum(history.time, history.columns[name], self.omega)) for name in names]
 
     def measured(self, history: History, names: Sequence[str]) -> complex:
@@ -63,7 +63,7 @@ class Guide:
         return complex(2 * np.arcsin(sine) / self.column.height)
 
     def parts(self, history: History, names: Sequence[str], heights: ArrayLike) -> tuple[complex, complex]:
-        """Return the waves up and down, from two columns of the history at heights above where they are wanted."""
+        """Return the waves up and down, from two columns at heights above where they are wanted."""
         values = self.amplitudes(history, names)
         turns = np.exp(-1j * self.wavenumber * np.asarray(heights, float))
         up, down = np.linalg.solve(np.column_stack([turns, 1 / turns]), values)
@@ -73,8 +73,8 @@ class Guide:
 def joint_parts(guide: Guide, scene: Scene, history: History) -> tuple[complex, complex]:
     """Return (T, R) of the joint of a column from two columns of the history below it and two above.
 
-    Waves come from below (the pulse) and from above (its echo from the top): with `up` and `down` at the joint, those
-    that leave it are T and R times those that meet it, alike from both sides.
+    Waves come from below (the pulse) and from above (its echo from the top): those that leave the joint are T and R
+    times those that meet it, alike from both sides.
     """
     section = column_of(scene)
     apart = np.asarray(section.heights) - section.joint[0].height

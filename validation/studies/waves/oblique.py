@@ -1,4 +1,4 @@
-"""What a viscous base sends back: below blocks at normal incidence, and of plane waves at an angle on a half space."""
+"""What a viscous base sends back: below blocks at normal incidence, and of oblique plane waves on a half space."""
 
 from __future__ import annotations
 
@@ -20,20 +20,10 @@ ANGLES = (0.0, 30.0, 45.0, 60.0, 75.0)
 def returned_energy(angle: float, wave: str, poisson: float = 0.25) -> float:
     """Return the share of energy that dashpots rho cP and rho cS on a half space send back of a plane wave.
 
-    Parameters
-    ----------
-    angle
-        Of incidence, from the normal [deg].
-    wave
-        "P" or "S" (in the plane).
-    poisson
-        Poisson's ratio.
-
-    Notes
-    -----
-    Of a wave A d e^{iw(t - s x - q z)} the boundary z = 0 has sigma_zz + rho cP v_z = 0 and sigma_xz + rho cS v_x = 0,
-    linear in the two waves that come back; flux normal to the boundary goes as c^2 q |A|^2. Beyond the critical
-    angle a P wave has an imaginary q, of whose sign |A| is independent.
+    `angle` of incidence is from the normal [deg], `wave` "P" or "S" (in the plane). Of a wave A d e^{iw(t - s x - q z)}
+    the boundary z = 0 has sigma_zz + rho cP v_z = 0 and sigma_xz + rho cS v_x = 0, linear in the two waves that come
+    back; flux normal to the boundary goes as c^2 q |A|^2. Beyond the critical angle a P wave has an imaginary q, of
+    whose sign |A| is independent.
     """
     speeds = {"S": 1.0, "P": math.sqrt((2 - 2 * poisson) / (1 - 2 * poisson))}
     slowness = math.sin(math.radians(angle)) / speeds[wave]
@@ -66,7 +56,7 @@ def reflections() -> Metrics:
 
 
 def energies() -> Metrics:
-    """Return the energy sent back over the angle, and the angles at which it passes three per cent [deg]."""
+    """Return the energy sent back over the angle, and the angles of three per cent [deg]."""
     from scipy.optimize import brentq
 
     numbers = {}

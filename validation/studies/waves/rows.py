@@ -1,4 +1,4 @@
-"""The rows that the study derives from histories of columns, and the gates on them."""
+"""The rows derived from histories of columns, and their gates."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class Wave:
         return Guide.of(self.scene, self.blocks)
 
     def row(self, compute: Callable[[Wave, History], Metrics]) -> Derived:
-        """Return the derived row that a function of the wave and its history computes."""
+        """Return the derived row that a function of wave and history computes."""
         return derived_row(
             self.scene.name, self.name, [self.scene], lambda _, history: compute(self, history), [self.solver]
         )
@@ -73,7 +73,7 @@ class Wave:
 
 @functools.cache
 def travelling() -> tuple[Wave, ...]:
-    """Return the waves whose speed and loss are measured."""
+    """Return the waves of measured speed and loss."""
     waves_measured = []
     for case in cases("waves-blocks"):
         waves_measured += [Wave(case, blocks) for blocks in BLOCKS[case.time.step]]
@@ -86,7 +86,7 @@ def travelling() -> tuple[Wave, ...]:
 
 
 def travelled(wave: Wave, history: History) -> Metrics:
-    """Return the measured error of the phase speed, and the share left after ten wavelengths."""
+    """Return the error of the phase speed, and the share left after ten wavelengths."""
     speed, remaining_share = wave.guide.speed_error_and_share(wave.guide.measured(history, COLUMNS))
     return {"wave.speed_error": speed, "wave.left": remaining_share}
 
@@ -102,12 +102,12 @@ def travelling_gates() -> Iterator[Gate]:
         yield Gate(*name, "wave.left", *near(remaining_share, 20 * np.pi * EXACT), loss_reason)
 
 
-# ---- joints ---------------------------------------------------------------------------------------------------------
+# ---- joints ----
 
 
 @functools.cache
 def jointed() -> tuple[Wave, ...]:
-    """Return the waves that meet a joint of kj = rho c w, with the scene of each."""
+    """Return the waves on a joint of kj = rho c w, with the scene of each."""
     scene = load_scene("waves-joint")
     joint_waves = []
     for blocks, courant, (alpha, delta) in JOINTS:
@@ -131,7 +131,7 @@ def jointed() -> tuple[Wave, ...]:
 
 
 def echoes(blocks: int, delta: float) -> float:
-    """Return how long the echoes between joint and top are waited for [s]: few blocks a wavelength leak slowly."""
+    """Return how long echoes between joint and top are awaited [s]: few blocks a wavelength leak slowly."""
     return 1.6 if blocks <= 20 and delta == 0.5 else 0.6
 
 
@@ -157,7 +157,7 @@ def joint_gates() -> Iterator[Gate]:
 
 
 def joint_order(finished: Finished) -> Metrics:
-    """Return the order in 1/N at which |T| tends to that of the continuum, fitted with its sign."""
+    """Return the signed order in 1/N at which |T| tends to the continuum."""
     errors_by_blocks = []
     for wave in averaged():
         T, _ = joint_parts(wave.guide, wave.scene, finished.needed_history(wave.scene.name, wave.solver))
@@ -169,7 +169,7 @@ def joint_order(finished: Finished) -> Metrics:
 
 
 def averaged() -> list[Wave]:
-    """Return the joints of one Courant number under average acceleration, by DDA."""
+    """Return the joints of one Courant number by DDA under average acceleration."""
     return [w for w in jointed() if w.solver == "dda" and w.scene.time.delta == 0.5]
 
 
@@ -179,7 +179,7 @@ def order_gate() -> Gate:
     return gate(averaged()[-1].scene, "order", "joint.order", (1.9, 2.1), why)
 
 
-# ---- transmitting base ----------------------------------------------------------------------------------------------
+# ---- transmitting base ----
 
 
 @functools.cache
@@ -203,11 +203,11 @@ def base_gates() -> Iterator[Gate]:
         yield gate(wave.scene, wave.name, "base.reflected", about(float(abs(R)), JOINT), why)
 
 
-# ---- what the page draws --------------------------------------------------------------------------------------------
+# ---- what the page draws ----
 
 
 def curves() -> dict[str, list[dict[str, object]]]:
-    """Return the closed forms of welded blocks for each scheme and c dt/h, over blocks a wavelength."""
+    """Return the closed forms of welded blocks by scheme and c dt/h, over blocks a wavelength."""
     drawn = []
     blocks = np.geomspace(7.5, 110, 60)
     for case in cases("waves-blocks"):

@@ -31,15 +31,7 @@ MAY_FOLLOW = "may follow from it, look again when it is right"
 
 
 def block(results: Sequence[GateReport], every: bool = False) -> list[str]:
-    """Return the lines of the block.
-
-    Parameters
-    ----------
-    results
-        What each gate said.
-    every
-        List all failing gates of a group, not the first few.
-    """
+    """Return the lines of the block; if `every`, all failing gates of a group are listed, not the first few."""
     judged = [t for t in results if t.status != Status.NOT_RUN and t.outcome == Outcome.COMPLETED]
     failed = [t for t in judged if t.status == Status.FAIL]
     # what a solver misreads of the block, with the scenes that show it; nothing where its statics are wrong
@@ -70,7 +62,7 @@ def wrapped(lines: Sequence[str]) -> Iterator[str]:
 
 
 def _table(results: Sequence[GateReport]) -> Iterator[str]:
-    """Yield one line a group: how many of its gates passed, failed, had no result to judge and were not run."""
+    """Yield a line a group: how many of its gates passed, failed, had nothing to judge and were not run."""
     yield f"{'':<{FIRST_WIDTH}}{'PASS':>8}{'FAIL':>8}{'no result':>11}{'NOT RUN':>9}"
     for group, says in (GROUPS | {BLOCK_DATA: BLOCK_DATA_WORDS}).items():
         of_group = [t for t in results if t.group == group]
@@ -104,13 +96,13 @@ def difference(share: float) -> str:
     return share_text(share, 2) if share < LARGEST else "more than can be told"
 
 
-# ---- what it tells --------------------------------------------------------------------------------------------------
+# ---- what it tells ----
 
 
 def first(judged: Sequence[GateReport], failed: Sequence[GateReport]) -> list[str]:
     """Return the groups that a fault lies in: the first that fails, and the pressure where it fails by itself.
 
-    By itself means that the displacement of the same scene is right to rounding.
+    That is where the displacement of the same scene is right to rounding.
     """
     groups = {t.group for t in failed} - {BLOCK_DATA}
     groups_at_fault = [group for group in FOLLOWS if group in groups][:1]
@@ -121,7 +113,7 @@ def first(judged: Sequence[GateReport], failed: Sequence[GateReport]) -> list[st
 
 
 def _headline(judged: Sequence[GateReport], failed: Sequence[GateReport], plain: Sequence[GateReport]) -> Iterator[str]:
-    """Yield what is right, and where the fault is to be looked for of which the plain scenes tell."""
+    """Yield what is right, and where to look for the fault that the plain scenes tell of."""
     right = [g for g in GROUPS if any(t.group == g for t in judged) and not any(t.group == g for t in failed)]
     if judged:
         yield f"\nright:  {', '.join(right) or 'nothing yet'}"
@@ -176,7 +168,6 @@ def _block_data(
 
 
 def _is_discounted(result: GateReport) -> bool:
-    """Whether a gate is on a scene whose velocities are discounted."""
     case = gates.cases(result.study).get((result.scene, JUDGED))
     return case is not None and case.scene.time.discount < 1
 
@@ -188,7 +179,7 @@ def _moving(failed: Sequence[GateReport]) -> list[GateReport]:
 
 
 def _failures(failed: Sequence[GateReport], every: bool) -> Iterator[str]:
-    """Yield the failing gates with their values, group by group."""
+    """Yield the failing gates with their values, by group."""
     for group in (*GROUPS, BLOCK_DATA):
         of_group = [t for t in failed if t.group == group]
         if of_group:
@@ -211,11 +202,11 @@ def outside(result: GateReport) -> str:
     return f"{metric} = {value} is outside [{', '.join(edges)}]"
 
 
-# ---- what was not judged --------------------------------------------------------------------------------------------
+# ---- what was not judged ----
 
 
 def _endings(results: Sequence[GateReport]) -> Iterator[str]:
-    """Yield how runs ended that gave no history to judge, each ending once with its scenes."""
+    """Yield how runs without a history to judge ended, each ending once with its scenes."""
     ended = [t for t in results if t.status == Status.FAIL and t.outcome not in ("", Outcome.COMPLETED)]
     for kind in dict.fromkeys(map(_ending, ended)):
         of_kind = [t for t in ended if _ending(t) == kind]
@@ -225,7 +216,7 @@ def _endings(results: Sequence[GateReport]) -> Iterator[str]:
 
 
 def _ending(result: GateReport) -> tuple[str, str, str]:
-    """Return what tells one ending from another: the place in the solver's code, but no number of a scene."""
+    """Return what tells endings apart: the place in the solver's code, but no number of a scene."""
     why, _, place = result.why.rpartition(" (") if result.outcome == Outcome.RAISED else (result.why, "", "")
     return result.outcome, re.sub(r"\d+", "", why), place
 
@@ -253,20 +244,20 @@ def _gates(results: Sequence[GateReport]) -> str:
 
 
 def _few(names: Sequence[str]) -> str:
-    """Return the first names of a list, and how many there are besides."""
+    """Return the first names of a list, and the number of the others."""
     every = list(dict.fromkeys(names))
     more = f" and {len(every) - SHOWN} more scenes" if len(every) > SHOWN else ""
     return ", ".join(every[:SHOWN]) + more
 
 
-# ---- what `compare` finds -------------------------------------------------------------------------------------------
+# ---- what `compare` finds ----
 
 
 def telling(failed: Sequence[GateReport], groups: Sequence[str]) -> GateReport | None:
     """Return a failing gate of the scene that tells most.
 
-    It is the scene with the most failing gates of the groups that the fault lies in, then the most failing gates,
-    then the fewest steps; the first of equal ones.
+    It has the most failing gates of the groups that the fault lies in, then the most failing gates, then the fewest
+    steps; the first of equal ones.
     """
     short = [t for t in failed if t.steps <= LONGEST]
     in_groups, every = Counter(t.scene for t in short if t.group in groups), Counter(t.scene for t in short)

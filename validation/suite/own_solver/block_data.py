@@ -1,8 +1,8 @@
 """Data of the block that the paper's scenes never change: a short scene for each, and how a solver may misread them.
 
-Every scene comes to rest, so that its gate is on where it rests and no slip of the scheme shows in it. A solver that
-reads a datum in another way rests where the scene with that other datum would, by the same closed form: the misreading
-is named if that holds to the gate's band in every scene that it changes.
+Every scene comes to rest: its gate is on where it rests, and no slip of the scheme shows in it. A solver that reads a
+datum in another way rests where the scene with that datum would, by the same closed form: the misreading is named if
+that holds to the gate's band in every scene that it changes.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ def scenes() -> tuple[Scene, ...]:
 
 @functools.cache
 def datum_of() -> dict[str, Datum]:
-    """Return the datum that each scene shows, by the scene's name."""
+    """Return the datum of each scene, by the scene's name."""
     return {scene.name: datum for scene, datum in zip(scenes(), DATA, strict=True)}
 
 
@@ -68,7 +68,7 @@ def displacement_at_rest(scene: Scene) -> float:
     """Return where the centroid rests [m].
 
     A load whose middle lies beside the centroid presses a shorter part of the top edge. The centroid sinks less by that
-    share, since turning does not move it.
+    share; turning does not move it.
     """
     pressed = 1 - 2 * abs(scene.load.eccentricity) / statics.size(scene)[0]
     return statics.static_displacement(scene) * pressed
@@ -83,12 +83,12 @@ def gates(solver: str) -> Iterator[Gate]:
         yield Gate(rectangle.name, (solver, "dda-textbook"), metric, 0, rounding(rectangle), SAME)
 
 
-# ---- misreadings ----------------------------------------------------------------------------------------------------
+# ---- misreadings ----
 
 
 @dataclass(frozen=True)
 class Misreading:
-    """A way to read a scene that is not its own, and the scene for which such a solver takes it."""
+    """A way to misread a scene: the scene for which such a solver takes it."""
 
     words: str
     values: Callable[[Scene], Values]
@@ -147,8 +147,8 @@ def is_misread(scene: Scene, misreading: Misreading) -> bool:
 def misreadings(measured: Sequence[AtRest]) -> dict[Misreading, list[str]]:
     """Return what was misread, with the names of the scenes that show it.
 
-    A misreading is one that changes some of the scenes by more than their bands, and in each of those the solver rests
-    where the scene so read would.
+    A misreading changes some of the scenes by more than their bands, and in each of those the solver rests where the
+    scene so read would.
     """
     named = {}
     by_name = {scene.name: scene for scene in scenes()}

@@ -1,7 +1,6 @@
 """The gates that a user's solver goes through, what each of them tells, and what a history shows in place of a report.
 
-A solver that is one function reports no modes and no static solution. Its history shows them all the same: where a
-damped motion ends, and with which root of the step it gets there (`history`).
+A solver that is one function reports no modes and no static solution. Its history shows them all the same (`history`).
 """
 
 from __future__ import annotations
@@ -43,7 +42,7 @@ SHOWN = ("displacement.static", "mode1.frequency", "mode1.damping", "mode1.measu
 
 
 def _start() -> Iterator[Gate]:
-    """Yield the gates on the first step and on what follows from it, from zero and from consistent acceleration."""
+    """Yield the gates on the first step and what follows, from zero and from consistent acceleration."""
     first = "the first step from rest, to three digits: a wrong initial acceleration changes it by half or by all of it"
     history = "matrix pencil on the displacement, which holds the ratio and, with alpha and gg, the natural frequency"
     same = "same equations, rounding apart (see the core study)"
@@ -100,12 +99,12 @@ START = Study(
 )
 
 
-# ---- which gates ----------------------------------------------------------------------------------------------------
+# ---- which gates ----
 
 
 @functools.cache
 def study_of(name: str) -> Study:
-    """Return a study whose gates the tests judge, by name; without the repeats of timings, of which no gate speaks."""
+    """Return a study by name, without the repeats of timings, of which no gate speaks."""
     return START if name == START.name else replace(get_study(name), timed=False)
 
 
@@ -123,7 +122,7 @@ def applying() -> Mapping[str, tuple[str, Gate]]:
 
 
 def _has_blocks(study: str) -> bool:
-    """Whether a study has a scene of a block, whose kind has no feature, before its cases are made."""
+    """Whether a study has a scene of a block, told before its cases are made."""
     scenes = (load_scene(declared) if isinstance(declared, str) else declared for declared in study_of(study).scenes)
     return any(not scene.kind.feature for scene in scenes)
 
@@ -136,7 +135,7 @@ def cases(study: str) -> Mapping[tuple[str, str], Case]:
 
 @functools.cache
 def asked(studies: tuple[str, ...]) -> Mapping[tuple[str, str], frozenset[str]]:
-    """Return the metrics that the gates of some studies read of each case, by scene and solver."""
+    """Return the metrics that the gates of some studies read, by scene and solver."""
     metrics_by_case: dict[tuple[str, str], set[str]] = {}
     for study in studies:
         for gate in get_study(study).gates():
@@ -146,7 +145,7 @@ def asked(studies: tuple[str, ...]) -> Mapping[tuple[str, str], frozenset[str]]:
 
 
 def applies(study: str, gate: Gate) -> bool:
-    """Whether a gate is one on the two-block model of `dda`: one block, a centred pressure, a sound history.
+    """Whether a gate is one on the two-block model of `dda`.
 
     What a user's solver has no way to report, such as the solves of a step, is not asked of it.
     """
@@ -155,7 +154,7 @@ def applies(study: str, gate: Gate) -> bool:
 
 
 def _is_two_blocks(case: Case) -> bool:
-    """Whether a case is one of the two-block model of `dda`: one block, a centred pressure, a sound history."""
+    """Whether it is one of the two-block model of `dda`: one block, a centred pressure, a sound history."""
     beyond = features.FIRST | {case.scene.kind.feature}  # a block, whose kind has none, under a centred pressure
     is_sound = "stability" not in case.measures
     return case.solver == JUDGED and is_sound and beyond.isdisjoint(features.of(case.scene))
@@ -176,18 +175,13 @@ def group(gate: Gate, scene: Scene) -> str:
     return "start" if gate.until == scene.time.step else "digits"
 
 
-# ---- what a solver does not report ----------------------------------------------------------------------------------
+# ---- what a solver does not report ----
 
 
 def lacking(gate: Gate, scene: Scene, parts: Collection[str]) -> str | None:
     """Return the part of the contract without which a gate measures nothing, None where a solver has what it takes.
 
-    Parameters
-    ----------
-    gate, scene
-        A gate and the scene of its judged side.
-    parts
-        What the solver reports beside its history, among "modes" and "static".
+    `scene` is that of the judged side, `parts` what the solver reports beside its history, among "modes" and "static".
     """
     if shown_by_history(gate, scene):
         return None

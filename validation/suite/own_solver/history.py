@@ -94,10 +94,7 @@ def _bound(z: complex, samples: int) -> float:
 
 
 def natural_frequency(scene: Scene, numerical: float, ratio: float) -> Value:
-    """Natural frequency w [rad/s] of the mode that shows w' [rad/s] and xi; undefined where no root of the scheme does.
-
-    See the head of this module.
-    """
+    """Natural w [rad/s] of the mode that shows w' [rad/s] and xi (see above); undefined where no root does."""
     t = scene.time
     z = np.exp(complex(-ratio, math.sqrt(max(0.0, 1 - ratio**2))) * numerical * t.step)
     q = float(2 * abs(1 - z) ** 2 / (1 + t.discount))

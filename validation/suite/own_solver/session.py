@@ -34,7 +34,7 @@ ASKED_FOR = {"modes": "modes(scene)", "static": "static(scene)"}
 
 @dataclass(frozen=True)
 class GateReport:
-    """What one gate said of a user's solver, as plain data that a process can hand to another."""
+    """What one gate said of a user's solver, as plain data."""
 
     id: str
     study: str
@@ -57,7 +57,7 @@ class GateReport:
 
 
 class GateRuns:
-    """The cases that one process has run for gates of some studies, each when a gate first asks for it.
+    """The cases that one process has run for gates, each when a gate first asks for it.
 
     Bands are formulas: those of a study that is not among `studies` are not computed.
     """
@@ -70,18 +70,18 @@ class GateRuns:
         self._finished: dict[str, Finished] = {}  # by study: what is derived is computed once for all gates
 
     def verdict(self, study: str, gate: Gate) -> Verdict:
-        """Run what a gate needs and has not been run, and judge it."""
+        """Run what a gate needs, and judge it."""
         self.run(study, gates.study_of(study).needs(gate))
         return evaluate(gate, self.finished(study))
 
     def finished(self, study: str) -> Finished:
-        """Return the cases that have been run, with what is derived from them in a study."""
+        """Return the cases that have been run, with what a study derives from them."""
         if study not in self._finished:
             self._finished[study] = Finished(self.rows, self.results, gates.study_of(study).recipes)
         return self._finished[study]
 
     def run(self, study: str, names: Iterable[tuple[str, str]]) -> None:
-        """Run those of some cases of a study that have not been run."""
+        """Run those cases of a study that have not been run."""
         missing = [gates.cases(study)[name] for name in names if name not in self.rows]
         if missing:
             kept = self.results.rows()
@@ -111,7 +111,7 @@ class Session(GateRuns):
         return solver.parts() if isinstance(solver, UserSolver | Outside) else PARTS
 
     def judge(self, name: str) -> tuple[Verdict, GateReport]:
-        """Run what a gate needs and has not been run, and judge it; what cannot be judged is not run."""
+        """Run what a gate needs, and judge it; what cannot be judged is not run."""
         study, gate = gates.applying()[name]
         case = gates.cases(study)[gate.cases[0]]
         verdict = self._verdict(study, gate, case)
