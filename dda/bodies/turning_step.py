@@ -272,6 +272,11 @@ def by_modes(rolling: Rolling, x: Vector, out: Vector) -> None:
 def move(rolling: Rolling, before: RollingState, D: Vector) -> None:
     """Write the turn of an increment D of q, and q after it."""
     turn(before.Q, D[2], rolling.exact, rolling.turn)
+    displace(rolling, before, D)
+
+
+def displace(rolling: Rolling, before: RollingState, D: Vector) -> None:
+    """Write q after an increment D."""
     for j in range(6):
         rolling.q[j] = before.q[j] + D[j]
 
@@ -328,6 +333,10 @@ def settle(
     """Make the stage with the corners `at`, and again with the turn that it found until nothing changes."""
     rolling = march.method
     room = march.room
+    if near == 0 and rolling.loads == 0:  # no force turns with the block
+        by_modes(rolling, room.x, rolling.D)
+        accept(march, length, start, before, after, near)
+        return FOUND, 0
     take_pair(rolling, before, near)
     copy(rolling.guess, rolling.D)
     solves = 0
@@ -353,7 +362,7 @@ def settle(
             if not change <= SETTLED * rolling.size:
                 settled = False
         copy(rolling.new, rolling.D)
-        if settled or (near == 0 and rolling.loads == 0):
+        if settled:
             accept(march, length, start, before, after, near)
             return FOUND, solves
     return NONE, solves

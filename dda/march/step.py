@@ -127,6 +127,7 @@ class Room(NamedTuple):
     x: Vector  # (n,) increments without contact forces
     load: Vector  # (n,) loads at the end of the stage
     pushed: Vector  # (n,) B' lambda
+    softened: Vector  # (w,) a row of B s^-1, times the weight of forces [s^2]
     free: Vector  # (m,) what the step without forces adds to the openings
     force: Vector  # (m,) forces in the coordinates of the body
 
@@ -214,7 +215,8 @@ def march_of(
     m = len(laws.compliance)
     rooms = [stage_room(plain_stage(stage), n, m, laws.banded) for stage in scheme.stages]
     loads = len(body.loads)
-    vectors = [*np.zeros((2, 2 + loads)), np.full(loads, np.inf), *np.zeros((3, n)), *np.zeros((2, m))]
+    width = max(map(len, body.weight), default=0)
+    vectors = [*np.zeros((2, 2 + loads)), np.full(loads, np.inf), *np.zeros((3, n)), np.zeros(width), *np.zeros((2, m))]
     march = March(
         body=body,
         laws=laws,
@@ -322,9 +324,21 @@ def write_flexibility(march: March, weight: float, length: Length) -> None:
     laws = march.laws
     flexible = length.flexible
     m = len(march.room.free)
+    softened = march.room.softened
+    inverse = length.inverse
+    mobility = body.mobility
     for r in range(m):
+        row = body.weight[r]
+        first = body.first[r]
+        for e in range(len(row)):
+            softened[e] = weight * row[e] * (inverse[first + e] * mobility[first + e])
         for s in range(r, min(r + 2, m) if laws.banded else m):
-            entry = weight * coupling(body, length.inverse, r, s)
+            other = body.weight[s]
+            ahead = body.first[s] - first
+            entry = 0.0
+            if ahead >= 0:  # a row that begins earlier than one before it shares no modes with it
+                for e in range(len(row) - ahead):
+                    entry += softened[ahead + e] * other[e]
             if laws.banded:
                 flexible.W[s - r][r] = entry
             else:
