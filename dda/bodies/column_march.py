@@ -275,7 +275,8 @@ def row_rates(march: March, rates: Array, base: float) -> Array:
     # no product of a library, whose fused sums tear apart blocks that fall alike
     moved = np.zeros(len(march.body.first))
     move_rows(march.body, rates, moved)
-    return np.asarray(moved - march.body.ground[:, 1] * base)
+    moved -= march.body.ground[:, 1] * base
+    return moved
 
 
 def static(column: Column, blocks: Blocks, laws: Laws, base: float) -> ArrayPair:
