@@ -542,6 +542,7 @@ def growth(quick: bool) -> list[str]:
             lambda n: least_seconds(lambda: fem_history(1000, 0.25, n), 2),
         ),
         grown("dda, pile of n polygons, 800 steps", [50, 100, 200, 400], pile_seconds),
+        grown("dda, wall of n bricks that settles, 200 steps", [49, 100, 196, 400], wall_seconds),
         grown("engine, scenes (dda, 200 steps)", [1, 10, 100], lambda n: sweep_seconds("figures-3-4", {}, "dda", n)),
     ]
 
@@ -549,6 +550,12 @@ def growth(quick: bool) -> list[str]:
 def pile_seconds(count: int) -> float:
     """Return the seconds of 800 steps of so many polygons in a box."""
     return least(lambda: plane_history(pile(count), 800), 1)[0]
+
+
+def wall_seconds(count: int) -> float:
+    """Return the seconds of 200 steps in which a square wall of so many bricks comes to rest."""
+    side = math.isqrt(count)
+    return least(lambda: plane_history(wall(side, side), 200), 2)[0]
 
 
 def sweep_seconds(name: str, values: dict[str, float], solver: str, count: int, jobs: int = 1) -> float:

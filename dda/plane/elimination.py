@@ -6,7 +6,7 @@ fewest neighbours first,
 
     A_ij <- A_ij - A_ik A_kk^-1 A_kj        of all neighbours i, j of k that are left,
 
-and A_kk^-1 and A_ik A_kk^-1 are kept in the places of A_kk and A_ik.
+and A_kk^-1 is kept in the place of A_kk, A_ik and A_kj as they are when k is eliminated.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from dda.contact.dense import Matrix, Vector, copy
+from dda.contact.dense import Matrix, Vector, copy, dot
 
 MISSING = -1  # of a block that is zero, and of an order for which there is no room
 
@@ -30,6 +30,7 @@ class BlockMatrix(NamedTuple):
     count: Any  # (n,) how many these are
     degree: Any  # (n,) work: neighbours that are left
     part: Vector  # (m,) work
+    panel: Matrix  # (m + 1, n m) work: a row of blocks, and a row that is taken off
 
 
 def block_matrix(bodies: int, m: int, most: int) -> BlockMatrix:
@@ -43,6 +44,7 @@ def block_matrix(bodies: int, m: int, most: int) -> BlockMatrix:
         count=np.zeros(n, np.int64),
         degree=np.zeros(n, np.int64),
         part=np.zeros(m),
+        panel=np.zeros((m + 1, n * m)),
     )
 
 
@@ -65,9 +67,9 @@ def order_blocks(matrix: BlockMatrix) -> int:
     for i in range(n):
         number[i][i] = 0
         order[i] = i
-        degree[i] = 0
+        degree[i] = -1  # itself is none
         for j in range(n):
-            if j != i and number[i][j] != MISSING:
+            if number[i][j] != MISSING:
                 degree[i] += 1
     for step in range(n):
         least = step  # of those that are left, which stand from here on
@@ -118,30 +120,38 @@ def factor_blocks(matrix: BlockMatrix) -> bool:
     """Factor a matrix in place; tell whether it is regular."""
     number = matrix.number
     blocks = matrix.blocks
-    part = matrix.part
-    m = len(part)
+    panel = matrix.panel
+    m = len(matrix.part)
     for k in matrix.order:
         pivot = blocks[number[k][k]]
         if not invert(pivot):
             return False
         later = matrix.later[k]
-        for a in range(matrix.count[k]):
-            i = later[a]
-            lower = blocks[number[i][k]]
+        count = matrix.count[k]
+        for b in range(count):
+            upper = blocks[number[k][later[b]]]
             for r in range(m):
                 for c in range(m):
-                    part[c] = 0.0
+                    total = 0.0
                     for e in range(m):
-                        part[c] += lower[r][e] * pivot[e][c]
-                copy(part, lower[r])
-            for b in range(matrix.count[k]):
-                j = later[b]
-                upper = blocks[number[k][j]]
-                rest = blocks[number[i][j]]
-                for r in range(m):
-                    for e in range(m):
-                        for c in range(m):
-                            rest[r][c] -= lower[r][e] * upper[e][c]
+                        total += pivot[r][e] * upper[e][c]
+                    panel[r][m * b + c] = total
+        taken = panel[m]
+        for a in range(count):
+            row = number[later[a]]
+            lower = blocks[row[k]]
+            for r in range(m):
+                for place in range(m * count):  # long loops over what lies side by side
+                    taken[place] = 0.0
+                for e in range(m):
+                    factor = lower[r][e]
+                    upper = panel[e]
+                    for place in range(m * count):
+                        taken[place] += factor * upper[place]
+                for b in range(count):
+                    rest = blocks[row[later[b]]][r]
+                    for c in range(m):
+                        rest[c] -= taken[m * b + c]
     return True
 
 
@@ -151,30 +161,27 @@ def solve_blocks(matrix: BlockMatrix, x: Matrix) -> None:
     part = matrix.part
     m = len(part)
     for k in matrix.order:
+        inverse = matrix.blocks[number[k][k]]
+        for r in range(m):
+            part[r] = dot(inverse[r], x[k], m)
         for a in range(matrix.count[k]):
             i = matrix.later[k][a]
-            take_product(matrix.blocks[number[i][k]], x[k], x[i], m)
+            take_product(matrix.blocks[number[i][k]], part, x[i])
     for place in range(len(matrix.order) - 1, -1, -1):
         k = matrix.order[place]
         for a in range(matrix.count[k]):
             j = matrix.later[k][a]
-            take_product(matrix.blocks[number[k][j]], x[j], x[k], m)
+            take_product(matrix.blocks[number[k][j]], x[j], x[k])
         inverse = matrix.blocks[number[k][k]]
         for r in range(m):
-            part[r] = x[k][r]
-            x[k][r] = 0.0
-        for r in range(m):
-            for c in range(m):
-                x[k][r] += inverse[r][c] * part[c]
+            part[r] = dot(inverse[r], x[k], m)
+        copy(part, x[k])
 
 
-def take_product(block: Matrix, x: Vector, out: Vector, m: int) -> None:
+def take_product(block: Matrix, x: Vector, out: Vector) -> None:
     """Take a block times x off."""
-    for r in range(m):
-        total = 0.0
-        for c in range(m):
-            total += block[r][c] * x[c]
-        out[r] -= total
+    for r in range(len(x)):
+        out[r] -= dot(block[r], x, len(x))
 
 
 def invert(A: Matrix) -> bool:
