@@ -51,6 +51,12 @@ class PolygonBody:
         return [[points[number] for number in corners] for corners in triangles_of(tuple(points))]
 
 
+def refuse_springs(plane, why):
+    """Raise NotImplementedError where contact in the plane is of given stiffness, which a program has none of."""
+    if any(math.isfinite(law.stiffness) for law in (plane.contact, *plane.pair) if law and law.stiffness):
+        raise NotImplementedError(f"contact of given stiffness: {why}")
+
+
 def bodies_of(scene):
     """Return the blocks of a scene, those that are held among them.
 

@@ -2,7 +2,7 @@
 
 import math
 
-from peers.bodies import bodies_of, friction_between
+from peers.bodies import bodies_of, friction_between, refuse_springs
 from peers.boxes import base_velocity, record, substeps
 from peers.packages import imported
 from peers.programs import ExternalProgram
@@ -29,10 +29,7 @@ class World:
     def __init__(self, scene, *, default):
         blocks = bodies_of(scene)
         plane = scene.table(PlaneSection)
-        if any(math.isfinite(law.stiffness) for law in (plane.contact, *plane.pair) if law and law.stiffness):
-            raise NotImplementedError(
-                "contact of given stiffness: Box2D's hertz correct overlap, its contacts stop a box dead"
-            )
+        refuse_springs(plane, "Box2D's hertz correct overlap, its contacts stop a box dead")
         if plane.pair:
             raise NotImplementedError("friction by pair: Box2D makes that of a pair of its two surfaces' own")
         if any(len(part) > CORNERS for block in blocks for part in block.parts):

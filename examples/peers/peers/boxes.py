@@ -140,10 +140,11 @@ def record(
     for row in range(scene.time.steps):
         for part in range(per_row):
             advance((row * per_row + part) * step, step)
-        rows[row, :, :3] = poses()
+        now = poses()
+        rows[row, :, :3] = now
         if forces is not None:
             rows[row, :, 3] = forces()
-        if not np.isfinite(rows[row, :, :3]).all():
+        if not np.isfinite(now).all():
             break
     return named(scene, rows, per_row * scene.time.steps)
 

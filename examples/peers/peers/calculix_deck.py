@@ -2,13 +2,14 @@
 
 import os
 import re
-import shutil
 import subprocess
 import tempfile
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+
+from peers.packages import command_of
 
 RECIPE = "apt-get install calculix-ccx (Debian 12: 2.20-1)"
 LIMIT, ALLOWANCE = 100.0, 0.02  # s, of a run and for each of its increments: some three times what they take
@@ -85,10 +86,7 @@ def program():
     NotImplementedError
         It is not installed.
     """
-    found = shutil.which("ccx")
-    if found is None:
-        raise NotImplementedError(f"CalculiX (ccx) is not installed: {RECIPE}")
-    return found
+    return command_of("ccx", "CalculiX (ccx)", RECIPE)
 
 
 def version():

@@ -6,7 +6,6 @@ gravity 9.81 straight down whatever its input says, constant acceleration with a
 """
 
 import math
-import shutil
 import subprocess
 import tempfile
 from pathlib import Path
@@ -15,6 +14,7 @@ import numpy as np
 
 from peers.bodies import bodies_of, friction_between
 from peers.boxes import named
+from peers.packages import command_of
 from validation.models.plane.tables import OWN_STEP, OWN_STIFFNESS, PlaneSection
 
 COMMAND = "ntdda"
@@ -99,9 +99,7 @@ def solve(scene):
     }
     for what in (name for name, where in refused.items() if where):
         raise NotImplementedError(f"{what}: ntdda has none")
-    command = shutil.which(COMMAND)
-    if command is None:
-        raise NotImplementedError(f"{COMMAND} is not installed: a command `ntdda GEOMETRY ANALYSIS` on PATH")
+    command = command_of(COMMAND, COMMAND, "a command `ntdda GEOMETRY ANALYSIS` on PATH")
     with tempfile.TemporaryDirectory() as directory:
         place = Path(directory)
         place.joinpath("scene.geo").write_text(geometry(blocks), encoding="utf-8")

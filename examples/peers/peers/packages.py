@@ -1,7 +1,8 @@
-"""Programs that are Python packages: imported where they are needed, and named where they are absent."""
+"""Programs that are Python packages or commands: looked up where they are needed, and named where they are absent."""
 
 import importlib
 import importlib.metadata
+import shutil
 
 
 def imported(module, title, recipe):
@@ -16,6 +17,20 @@ def imported(module, title, recipe):
         return importlib.import_module(module)
     except ImportError as error:
         raise NotImplementedError(f"{title} is not installed: {recipe}") from error
+
+
+def command_of(name, title, recipe):
+    """Return the path of a program's command.
+
+    Raises
+    ------
+    NotImplementedError
+        It is not installed.
+    """
+    found = shutil.which(name)
+    if found is None:
+        raise NotImplementedError(f"{title} is not installed: {recipe}")
+    return found
 
 
 def version_of(package):

@@ -2,7 +2,7 @@
 
 import math
 
-from peers.bodies import bodies_of, friction_between
+from peers.bodies import bodies_of, friction_between, refuse_springs
 from peers.boxes import base_velocity, record
 from peers.packages import imported
 from peers.programs import ExternalProgram
@@ -28,8 +28,7 @@ class World:
     def __init__(self, scene, *, default):
         blocks = bodies_of(scene)
         plane = scene.table(PlaneSection)
-        if any(math.isfinite(law.stiffness) for law in (plane.contact, *plane.pair) if law and law.stiffness):
-            raise NotImplementedError("contact of given stiffness: pymunk's contacts are impulses")
+        refuse_springs(plane, "pymunk's contacts are impulses")
         self.scene = scene
         self.pymunk = imported("pymunk", "pymunk", RECIPE)
         self.space = self.pymunk.Space()

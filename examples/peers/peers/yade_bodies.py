@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from peers.packages import command_of
 from peers.yade_program import ANSWER, REQUEST
 
 RECIPE = "apt-get install yade"
@@ -134,9 +135,7 @@ def run(request):
     RuntimeError
         It gave no answer.
     """
-    program = shutil.which("yade")
-    if program is None:
-        raise NotImplementedError(f"Yade is not installed: {RECIPE}")
+    program = command_of("yade", "Yade", RECIPE)
     with tempfile.TemporaryDirectory() as directory:
         script = Path(directory) / "bodies_and_bonds.py"  # a script named yade.py would stand in for the package
         script.write_text((Path(__file__).parent / "yade_program.py").read_text())
