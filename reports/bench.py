@@ -615,10 +615,10 @@ answer; a loop over steps is what one writes for whatever is not linear.
 ## Steps that switch
 
 Microseconds of processor time a step with set-up; the budget is what a step may take. What numba compiles is not
-counted: once an install, for the first long history of each kind, 10 to 16 s of a block, of one that turns and of a
-column, 30 s of the elements (from 50,000 steps on), 20 s of blocks in the plane, whose switches are solves. 1e5 steps
-of a block that opens take two seconds in plain Python, 0.02 s from then on. MuJoCo and pymunk step the same box as a
-rigid one on a plane, each step in a Python loop.
+counted: once an install, for the first long history of each kind, 4 to 16 s of a block, of one that turns and of a
+column, 30 s of the elements (from 50,000 steps on), 11 to 20 s of blocks in the plane, whose switches are solves. 1e5
+steps of a block that opens take two seconds in plain Python, 0.02 s from then on. MuJoCo and pymunk step the same box
+as a rigid one on a plane, each step in a Python loop.
 
 | what | steps | switches | ours [us] | budget [us] | MuJoCo [us] | pymunk [us] | answers apart |
 |---|---|---|---|---|---|---|---|
