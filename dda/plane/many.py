@@ -18,6 +18,7 @@ nothing is guaranteed, and what does not end is cut.
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -31,6 +32,7 @@ from dda.contact.rows import (
     UPPER,
     Laws,
     Rows,
+    States,
     Work,
     all_equal,
     along,
@@ -60,7 +62,6 @@ SWEEPS = 60
 SLACK = 1e-13  # of a block's size: gaps and slips of many contacts are uncertain by rounding
 CROSSINGS = 12  # matrices of Newton's method on the share of a contact that closes, which takes one or two
 CORRECTIONS = 12  # by the same factors, which take as long as new ones of some hundred bodies
-RATE = 0.05  # of a correction over the one before, until two are known
 CORRECTED = 1e-13  # of all increments: what a next correction would add
 ROUGH = 1e-5  # the same where states are tried
 AT_LIMIT = 1e-9  # of the limit along the edge, below which a contact slips after a sweep
@@ -81,7 +82,9 @@ class Many(NamedTuple):
     rest: Vector  # (n,) forces without equilibrium, then what these add to the increments
     kappa: Vector  # (c,) what N changes of the ways of contacts that close
     known: Any  # (1,) how many blocks the factors have
-    factored: Vector  # (1,) weight of forces in the step of which the factors are; MISSING: there are none [s^2]
+    factored: Vector  # (2,) of the factors: weight of forces in their step [s^2], or MISSING if there are none; rows
+    states: States  # (2c,) of the rows in the factors
+    pairs: Any  # (c, 2) blocks of the contacts in the factors
 
 
 def many_of(blocks: Blocks, places: Places, size: float) -> Many:
@@ -103,7 +106,9 @@ def many_of(blocks: Blocks, places: Places, size: float) -> Many:
         rest=rest,
         kappa=np.zeros(len(places.law)),
         known=np.full(1, MISSING),
-        factored=np.full(1, float(MISSING)),
+        factored=np.full(2, float(MISSING)),
+        states=np.zeros(2 * len(places.law), dtype=np.int64),
+        pairs=np.zeros((len(places.law), 2), dtype=np.int64),
     )
 
 
@@ -164,7 +169,7 @@ def find_many(
             solves += spent
             if spent == 0:
                 return NONE, solves
-            exact = all_equal(work.tried, work.saved, laws.rows)
+            exact = are_of(many, laws, work)
             if update_all(many, laws, after, work):
                 if exact:
                     return FOUND, solves
@@ -216,7 +221,9 @@ def solve_states(many: Many, laws: Laws, before: Rows, length: Length, after: Ro
     share_crossings(many, laws, before, after, work)
     solves = 0
     settled = False
-    while not settled and solves < CROSSINGS:
+    while not settled:
+        if solves == CROSSINGS:
+            return 0
         solves += 1
         if fresh:
             many.factored[0] = MISSING
@@ -224,7 +231,11 @@ def solve_states(many: Many, laws: Laws, before: Rows, length: Length, after: Ro
             if not factor_blocks(many.matrix):
                 return 0
             many.factored[0] = length.numbers[3]
-            copy(work.tried, work.saved)
+            many.factored[1] = laws.rows
+            for r in range(2 * n):
+                many.states[r] = work.tried[r]
+            for k in range(n):
+                copy(many.places.sides[k], many.pairs[k])
         settled = approach(many, laws, before, length, after, work, fresh)
         fresh = True
     for r in range(2 * n):
@@ -234,6 +245,16 @@ def solve_states(many: Many, laws: Laws, before: Rows, length: Length, after: Ro
         if work.tried[r] != INSIDE:
             write_at_bound(laws, before, after, work, r, opening_of(many, work, r))
     return solves
+
+
+def are_of(many: Many, laws: Laws, work: Work) -> bool:
+    """Tell whether the factors are those of the present contacts in the states `work.tried`."""
+    if many.factored[1] != laws.rows or not all_equal(work.tried, many.states, laws.rows):
+        return False
+    for k in range(laws.contacts):  # noqa: SIM110  (numba knows no generators)
+        if not all_equal(many.places.sides[k], many.pairs[k], 2):
+            return False
+    return True
 
 
 def approach(many: Many, laws: Laws, before: Rows, length: Length, after: Rows, work: Work, fresh: bool) -> bool:
@@ -246,7 +267,7 @@ def approach(many: Many, laws: Laws, before: Rows, length: Length, after: Rows, 
     """
     blocks = many.blocks
     rest = many.rest
-    tolerance = CORRECTED if all_equal(work.tried, work.saved, laws.rows) else ROUGH
+    tolerance = CORRECTED if are_of(many, laws, work) else ROUGH
     settled = False
     last = 0.0
     for left in range(CORRECTIONS - 1, -1, -1):
@@ -272,10 +293,17 @@ def approach(many: Many, laws: Laws, before: Rows, length: Length, after: Rows, 
                 way += abs(many.x[mode]) / blocks.root_mass[i]
         add_forces(many, laws, work, after, 0.0, rest)
         settled = share_crossings(many, laws, before, after, work) or tolerance == ROUGH
-        rate = change / last if last > 0 else RATE
+        if not math.isfinite(change):  # nor is anything that would go on from here
+            for i in range(len(many.x)):
+                many.x[i] = 0.0
+            for k in range(laws.contacts):
+                work.beta[k] = 1.0
+                many.kappa[k] = 0.0
+            return False
+        rate = change / last if last > 0 else 1.0  # unknown of the first one
         if settled and (change * rate <= tolerance * way or (fresh and last > 0)):
             return True
-        if not (rate < 1 and change * rate**left <= tolerance * way):
+        if last > 0 and not (rate < 1 and change * rate**left <= tolerance * way):
             return False
         last = change
     return False

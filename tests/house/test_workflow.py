@@ -111,7 +111,7 @@ def test_every_path_that_a_page_names_exists():
 
 
 def left_out(path):
-    """Tell whether a path belongs to the adapters of other programs, and these are gone: all else stands without."""
+    """Whether a path is of the adapters of other programs, and these are gone."""
     return path.is_relative_to(PEERS) and not PEERS.exists()
 
 
