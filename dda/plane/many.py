@@ -5,11 +5,9 @@ With the increments x of the modes by forces of contact, s the modes' stiffness 
 
     s x = sum F' lambda,      N = -(q_n + B_n x) / c_n,      T = -(q_t + B_t x) beta / c_t  or  +-(tan(phi) N + c),
 
-and are put in. The equilibrium that is left over is solved for, again and again, until what it adds is small. Factors
-are kept: those of the same states serve another round and another step, in which directions differ by little, and
-those of other states tell well enough which contacts open, close or slip. So most steps factor one matrix or none.
-What is added last is added to forces too, not to ways alone: those of stiff springs are the small rest of a gap over a
-small c, and keep the digits which the equilibrium gives them.
+and are put in. That costs digits of stiff springs, whose force is the small rest of a gap over a small c: once the
+states are found, the equilibrium that is left over is solved for again with the same factors, and its forces are added,
+so that forces keep the digits which the equilibrium gives them.
 
 All states are updated together. Where that does not end, sweeps of exact solutions contact by contact (Gauss and
 Seidel) give the states from which the next solves go on. Frictionless contacts have one answer; of many with friction
@@ -18,7 +16,6 @@ nothing is guaranteed, and what does not end is cut.
 
 from __future__ import annotations
 
-import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -32,9 +29,7 @@ from dda.contact.rows import (
     UPPER,
     Laws,
     Rows,
-    States,
     Work,
-    all_equal,
     along,
     crossing_share,
     is_smooth,
@@ -60,10 +55,9 @@ TOGETHER = 8  # solves in which all states are updated at once
 RESTARTS = 6  # of sweeps, each longer than the last one
 SWEEPS = 60
 SLACK = 1e-13  # of a block's size: gaps and slips of many contacts are uncertain by rounding
-CROSSINGS = 12  # matrices of Newton's method on the share of a contact that closes, which takes one or two
-CORRECTIONS = 12  # by the same factors, which take as long as new ones of some hundred bodies
-CORRECTED = 1e-13  # of all increments: what a next correction would add
-ROUGH = 1e-5  # the same where states are tried
+CROSSINGS = 40  # of Newton's method on the share of a contact that closes, which takes about five
+CROSSED = 1e-11  # change of that share in its last step
+LEAST_SHARE = 1e-12
 AT_LIMIT = 1e-9  # of the limit along the edge, below which a contact slips after a sweep
 STIFFEST = 1e300  # 1/s^2
 FILL = 60  # blocks of the factors for each body for which there is room
@@ -79,12 +73,10 @@ class Many(NamedTuple):
     body: Any  # (b,) number among those that move; MISSING of a fixed one
     right: Matrix  # (moving, m) right-hand side and solution
     x: Vector  # (n,) increments of the modes by forces of contact
-    rest: Vector  # (n,) forces without equilibrium, then what these add to the increments
+    residual: Vector  # (n,)
     kappa: Vector  # (c,) what N changes of the ways of contacts that close
+    normal: Vector  # (c,) N about which that is linear [N]
     known: Any  # (1,) how many blocks the factors have
-    factored: Vector  # (2,) of the factors: weight of forces in their step [s^2], or MISSING if there are none; rows
-    states: States  # (2c,) of the rows in the factors
-    pairs: Any  # (c, 2) blocks of the contacts in the factors
 
 
 def many_of(blocks: Blocks, places: Places, size: float) -> Many:
@@ -94,7 +86,8 @@ def many_of(blocks: Blocks, places: Places, size: float) -> Many:
     body[moving] = np.arange(len(moving))
     n = len(moving)
     m = int(blocks.modes.max())
-    x, rest = np.zeros((2, int(blocks.modes.sum())))
+    x, residual = np.zeros((2, int(blocks.modes.sum())))
+    kappa, normal = np.zeros((2, len(places.law)))
     return Many(
         blocks=blocks,
         places=places,
@@ -103,12 +96,10 @@ def many_of(blocks: Blocks, places: Places, size: float) -> Many:
         body=body,
         right=np.zeros((n, m)),
         x=x,
-        rest=rest,
-        kappa=np.zeros(len(places.law)),
-        known=np.full(1, MISSING),
-        factored=np.full(2, float(MISSING)),
-        states=np.zeros(2 * len(places.law), dtype=np.int64),
-        pairs=np.zeros((len(places.law), 2), dtype=np.int64),
+        residual=residual,
+        kappa=kappa,
+        normal=normal,
+        known=np.zeros(1, dtype=np.int64),
     )
 
 
@@ -117,16 +108,16 @@ def set_pattern(many: Many) -> bool:
 
     Blocks of pairs that touch no more are kept until then: they cost time alone.
     """
-    if mark_pairs(many) or many.known[0] == MISSING:
-        clear_pattern(many.matrix)
-        mark_pairs(many)
-        many.known[0] = order_blocks(many.matrix)
-        many.factored[0] = MISSING
-    return bool(many.known[0] != MISSING)
+    if many.known[0] > 0 and not mark_pairs(many, False):
+        return True
+    clear_pattern(many.matrix)
+    mark_pairs(many, True)
+    many.known[0] = order_blocks(many.matrix)
+    return bool(many.known[0] > 0)
 
 
-def mark_pairs(many: Many) -> bool:
-    """Name the blocks of two bodies that touch; tell whether any had none."""
+def mark_pairs(many: Many, marks: bool) -> bool:
+    """Tell whether two bodies that touch have no block; mark them if that is asked for."""
     number = many.matrix.number
     sides = many.places.sides
     missing = False
@@ -135,8 +126,9 @@ def mark_pairs(many: Many) -> bool:
         j = many.body[sides[k][1]]
         if i >= 0 and j >= 0 and number[i][j] == MISSING:
             missing = True
-            number[i][j] = 0
-            number[j][i] = 0
+            if marks:
+                number[i][j] = 0
+                number[j][i] = 0
     return missing
 
 
@@ -169,11 +161,9 @@ def find_many(
             solves += spent
             if spent == 0:
                 return NONE, solves
-            exact = are_of(many, laws, work)
             if update_all(many, laws, after, work):
-                if exact:
-                    return FOUND, solves
-                many.factored[0] = MISSING
+                refine(many, laws, length, after, work)
+                return FOUND, solves
     return NONE, solves
 
 
@@ -213,31 +203,32 @@ def closes(laws: Laws, before: Rows, work: Work, k: int) -> bool:
 def solve_states(many: Many, laws: Laws, before: Rows, length: Length, after: Rows, work: Work) -> int:
     """Write the rows in the states `work.tried`; return the number of solves, zero where they have no solution."""
     n = laws.contacts
-    fresh = many.factored[0] != length.numbers[3]
-    if fresh:
-        for i in range(len(many.x)):
-            many.x[i] = 0.0
-    add_forces(many, laws, work, after, 1.0, many.x)
-    share_crossings(many, laws, before, after, work)
+    closing = False
+    for k in range(n):
+        work.beta[k] = 1.0
+        many.kappa[k] = 0.0
+        closing = closing or closes(laws, before, work, k)
     solves = 0
     settled = False
-    while not settled:
-        if solves == CROSSINGS:
-            return 0
+    while not settled and solves < CROSSINGS:
         solves += 1
-        if fresh:
-            many.factored[0] = MISSING
-            assemble(many, laws, length, work)
-            if not factor_blocks(many.matrix):
-                return 0
-            many.factored[0] = length.numbers[3]
-            many.factored[1] = laws.rows
-            for r in range(2 * n):
-                many.states[r] = work.tried[r]
-            for k in range(n):
-                copy(many.places.sides[k], many.pairs[k])
-        settled = approach(many, laws, before, length, after, work, fresh)
-        fresh = True
+        assemble(many, laws, length, work)
+        if not factor_blocks(many.matrix):
+            return 0
+        take_solution(many)
+        add_forces(many, laws, work, after, 1.0)
+        settled = True
+        for k in range(n):
+            if not closing or not closes(laws, before, work, k):
+                continue
+            N = after.force[k]
+            share = max(crossing_share(laws, before.opening[k], k, N), LEAST_SHARE)
+            if abs(share - work.beta[k]) > CROSSED * share:
+                settled = False
+            displacement = opening_of(many, work, n + k)
+            many.kappa[k] = (after.force[n + k] * laws.compliance[n + k] + displacement) / N if N > 0 else 0.0
+            many.normal[k] = N
+            work.beta[k] = share
     for r in range(2 * n):
         after.state[r] = work.tried[r]
         after.slip[r] = 0.0
@@ -247,88 +238,6 @@ def solve_states(many: Many, laws: Laws, before: Rows, length: Length, after: Ro
     return solves
 
 
-def are_of(many: Many, laws: Laws, work: Work) -> bool:
-    """Tell whether the factors are those of the present contacts in the states `work.tried`."""
-    if many.factored[1] != laws.rows or not all_equal(work.tried, many.states, laws.rows):
-        return False
-    for k in range(laws.contacts):  # noqa: SIM110  (numba knows no generators)
-        if not all_equal(many.places.sides[k], many.pairs[k], 2):
-            return False
-    return True
-
-
-def approach(many: Many, laws: Laws, before: Rows, length: Length, after: Rows, work: Work, fresh: bool) -> bool:
-    """Solve from the present increments by the factors at hand; tell whether that ends.
-
-    Parameters
-    ----------
-    fresh
-        Whether the factors are those of these states: then what a second correction adds is rounding.
-    """
-    blocks = many.blocks
-    rest = many.rest
-    tolerance = CORRECTED if are_of(many, laws, work) else ROUGH
-    settled = False
-    last = 0.0
-    for left in range(CORRECTIONS - 1, -1, -1):
-        if not settled:
-            add_forces(many, laws, work, after, 1.0, many.x)
-        for i in range(len(rest)):
-            rest[i] = -many.x[i] * stiffness_of(length, i)
-        push_contacts(blocks, many.places, after.force, rest)
-        for i in range(len(many.body)):
-            if blocks.modes[i] > 0:
-                right = many.right[many.body[i]]
-                for e in range(len(right)):
-                    right[e] = rest[blocks.first[i] + e] if e < blocks.modes[i] else 0.0
-        solve_blocks(many.matrix, many.right)
-        change = 0.0
-        way = 0.0
-        for i in range(len(many.body)):
-            for e in range(blocks.modes[i]):
-                mode = blocks.first[i] + e
-                rest[mode] = many.right[many.body[i]][e]
-                many.x[mode] += rest[mode]
-                change += abs(rest[mode]) / blocks.root_mass[i]
-                way += abs(many.x[mode]) / blocks.root_mass[i]
-        add_forces(many, laws, work, after, 0.0, rest)
-        settled = share_crossings(many, laws, before, after, work) or tolerance == ROUGH
-        if not math.isfinite(change):  # nor is anything that would go on from here
-            for i in range(len(many.x)):
-                many.x[i] = 0.0
-            for k in range(laws.contacts):
-                work.beta[k] = 1.0
-                many.kappa[k] = 0.0
-            return False
-        rate = change / last if last > 0 else 1.0  # unknown of the first one
-        if settled and (change * rate <= tolerance * way or (fresh and last > 0)):
-            return True
-        if last > 0 and not (rate < 1 and change * rate**left <= tolerance * way):
-            return False
-        last = change
-    return False
-
-
-def share_crossings(many: Many, laws: Laws, before: Rows, after: Rows, work: Work) -> bool:
-    """Write the shares of contacts that close, by their forces; tell whether all forces are those of their shares."""
-    settled = True
-    for k in range(laws.contacts):
-        work.beta[k] = 1.0
-        many.kappa[k] = 0.0
-        if closes(laws, before, work, k):
-            r = laws.contacts + k
-            N = after.force[k]
-            way = opening_of(many, work, r)
-            stretch = after.force[r] * laws.compliance[r]
-            share = crossing_share(laws, before.opening[k], k, N)
-            work.beta[k] = share
-            if N > 0:
-                many.kappa[k] = (stretch + way) / N
-                if abs(stretch + share * way) > CORRECTED * share * (abs(way) + abs(work.q[r])):
-                    settled = False
-    return settled
-
-
 def opening_of(many: Many, work: Work, r: int) -> float:
     """Return q + B x of a row [m]."""
     opening: float = work.q[r] + contact_displacement(many.x, many.blocks, many.places, r)
@@ -336,7 +245,7 @@ def opening_of(many: Many, work: Work, r: int) -> float:
 
 
 def assemble(many: Many, laws: Laws, length: Length, work: Work) -> None:
-    """Write the matrix for the states `work.tried`."""
+    """Write matrix and right-hand side for the states `work.tried`."""
     matrix = many.matrix
     first = many.blocks.first
     n = laws.contacts
@@ -347,7 +256,8 @@ def assemble(many: Many, laws: Laws, length: Length, work: Work) -> None:
             continue
         block = matrix.blocks[matrix.number[body][body]]
         modes = many.blocks.modes[i]
-        for e in range(len(block)):
+        for e in range(len(many.right[body])):
+            many.right[body][e] = 0.0
             block[e][e] = stiffness_of(length, first[i] + e) if e < modes else 1.0
     for k in range(n):
         if work.tried[k] != INSIDE:
@@ -355,14 +265,18 @@ def assemble(many: Many, laws: Laws, length: Length, work: Work) -> None:
         r = n + k
         shear_state = work.tried[r]
         stiffness = 1 / laws.compliance[k]
-        add_row(many, k, k, k, stiffness)
+        add_row(many, k, k, k, stiffness, -stiffness * work.q[k])
         if shear_state != INSIDE:
-            add_row(many, k, r, k, shear_state * laws.friction[k] * stiffness)
+            slope = shear_state * laws.friction[k] * stiffness
+            add_row(many, k, r, k, slope, shear_state * laws.upper[r] - slope * work.q[k])
         elif not is_smooth(laws, k):
             shear_stiffness = work.beta[k] / laws.compliance[r]
-            add_row(many, k, r, r, shear_stiffness)
-            if many.kappa[k] != 0.0:  # N = -(q + B x) / c moves the share behind the crossing
-                add_row(many, k, r, k, -shear_stiffness * many.kappa[k] * stiffness)
+            add_row(many, k, r, r, shear_stiffness, -shear_stiffness * work.q[r])
+            kappa = many.kappa[k]
+            if kappa != 0.0:  # N = -(q + B x) / c moves the share behind the crossing
+                slope = -shear_stiffness * kappa * stiffness
+                constant = shear_stiffness * kappa * (many.normal[k] + stiffness * work.q[k])
+                add_row(many, k, r, k, slope, constant)
 
 
 def stiffness_of(length: Length, mode: int) -> float:
@@ -371,8 +285,8 @@ def stiffness_of(length: Length, mode: int) -> float:
     return 1 / flexibility if flexibility > 0 else STIFFEST
 
 
-def add_row(many: Many, k: int, force: int, row: int, slope: float) -> None:
-    """Add a force -slope B x, which pushes by the row `force` and follows the row `row` of a contact."""
+def add_row(many: Many, k: int, force: int, row: int, slope: float, constant: float) -> None:
+    """Add a force constant - slope B x, which pushes by the row `force` and follows the row `row` of a contact."""
     matrix = many.matrix
     modes = many.blocks.modes
     places = many.places
@@ -382,6 +296,9 @@ def add_row(many: Many, k: int, force: int, row: int, slope: float) -> None:
         if body < 0:
             continue
         F = places.F[force][side]
+        right = many.right[body]
+        for e in range(modes[i]):
+            right[e] += F[e] * constant
         for opposite in range(2):
             j = places.sides[k][opposite]
             other = many.body[j]
@@ -396,8 +313,17 @@ def add_row(many: Many, k: int, force: int, row: int, slope: float) -> None:
                         block[e][f] += push * B[f]
 
 
-def add_forces(many: Many, laws: Laws, work: Work, after: Rows, whole: float, x: Vector) -> None:
-    """Write the forces that increments make; where `whole` is zero, add what more increments add to them."""
+def take_solution(many: Many) -> None:
+    """Solve with the factors, and write the solution as increments of the modes."""
+    solve_blocks(many.matrix, many.right)
+    first = many.blocks.first
+    for i in range(len(many.body)):
+        for e in range(many.blocks.modes[i]):
+            many.x[first[i] + e] = many.right[many.body[i]][e]
+
+
+def add_forces(many: Many, laws: Laws, work: Work, after: Rows, whole: float) -> None:
+    """Write the forces that the increments make; where `whole` is zero, add what more increments add to them."""
     n = laws.contacts
     for k in range(n):
         r = n + k
@@ -406,14 +332,33 @@ def add_forces(many: Many, laws: Laws, work: Work, after: Rows, whole: float, x:
             after.force[r] = 0.0
         if work.tried[k] != INSIDE:
             continue
-        N = -(whole * work.q[k] + contact_displacement(x, many.blocks, many.places, k)) / laws.compliance[k]
+        N = -(whole * work.q[k] + contact_displacement(many.x, many.blocks, many.places, k)) / laws.compliance[k]
         after.force[k] += N
         if work.tried[r] != INSIDE:
             after.force[r] += work.tried[r] * (laws.friction[k] * N + whole * laws.upper[r])
         elif not is_smooth(laws, k):
-            displacement = whole * work.q[r] + contact_displacement(x, many.blocks, many.places, r)
-            displacement += (1 - whole) * many.kappa[k] * N
+            displacement = whole * work.q[r] + contact_displacement(many.x, many.blocks, many.places, r)
+            displacement += many.kappa[k] * (N - whole * many.normal[k])
             after.force[r] -= displacement * work.beta[k] / laws.compliance[r]
+
+
+def refine(many: Many, laws: Laws, length: Length, after: Rows, work: Work) -> None:
+    """Add the forces of the equilibrium that is left over, by the factors of the last solve."""
+    first = many.blocks.first
+    for i in range(len(many.x)):
+        many.residual[i] = -many.x[i] * stiffness_of(length, i)
+    push_contacts(many.blocks, many.places, after.force, many.residual)
+    for i in range(len(many.body)):
+        modes = many.blocks.modes[i]
+        if modes > 0:
+            right = many.right[many.body[i]]
+            for e in range(len(right)):
+                right[e] = many.residual[first[i] + e] if e < modes else 0.0
+    take_solution(many)
+    add_forces(many, laws, work, after, 0.0)
+    for r in range(2 * laws.contacts):
+        if after.force[r] != 0.0:
+            after.opening[r] = 0.0 - after.force[r] * laws.compliance[r]
 
 
 def sweep(many: Many, laws: Laws, length: Length, after: Rows, work: Work, sweeps: int) -> None:

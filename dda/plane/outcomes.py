@@ -9,7 +9,6 @@ import numpy as np
 
 from dda.contact.rows import FOUND, NONE, OUTCOMES, TOO_DEEP, rows_of, solve, update
 from dda.march.step import History, March
-from dda.plane.elimination import MISSING
 from dda.plane.many import solve_states, update_all
 from dda.plane.model import PlaneModel
 from dda.plane.taken import laws_for
@@ -81,7 +80,6 @@ def flipping_contacts(march: March, is_cut: bool) -> list[int]:
         first_met[tried] = number
         states.append(tried)
         if contacts > plane.dense:
-            plane.many.factored[0] = MISSING  # what follows states is theirs alone
             solve_states(plane.many, laws, before, length, after, work)
             update_all(plane.many, laws, after, work)
         else:

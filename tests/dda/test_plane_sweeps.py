@@ -42,19 +42,3 @@ def test_sweeps_end_in_the_states_and_forces_of_the_solution(monkeypatch):
         result = solve_plane(model, scheme(CONSTANT, 1e-3), 8, compiled=False)
         assert result.outcome == "completed"
     assert seen == ({INSIDE, LOWER}, {INSIDE, LOWER, UPPER})
-
-
-@pytest.mark.parametrize("kept", ["factored", "x"])
-def test_what_is_kept_decides_nothing(kept, monkeypatch):
-    find = many.find_many
-
-    def spoilt(matrices, *given):
-        getattr(matrices, kept)[0] = many.MISSING if kept == "factored" else np.nan
-        return find(matrices, *given)
-
-    monkeypatch.setattr(solution, "DENSE", 0)
-    request = slope(0.3, 0.6), scheme(CONSTANT, 1e-3), 8
-    normal = solve_plane(*request, compiled=False).normal
-    monkeypatch.setattr(step, "find_many", spoilt)
-    monkeypatch.setattr(solution, "make_steps", steps_by(step.make_stage, step.account, step.keep, step.keep_rows))
-    assert solve_plane(*request, compiled=False).normal == pytest.approx(normal, abs=1e-4)  # of 5e4 N
