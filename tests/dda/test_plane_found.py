@@ -157,3 +157,14 @@ def test_a_crowd_of_blocks_keeps_its_accounts_and_moves_as_it_did(scheme, dense,
     assert result.outcome == "completed" and set(result.state.ravel()) == {-2, 0, 1, 2}
     assert np.abs(result.energy["balance"]).max() < 1e-12 * result.energy["kinetic"].max()
     held(f"crowd by {scheme.name}", result)
+
+
+@pytest.mark.long
+def test_a_wall_that_lands_on_stiff_springs_has_states_in_every_step():
+    places = [(k + 0.25 * (row % 2), 0.5 * row) for row in range(6) for k in range(6)]
+    bricks = [PlaneBlock(rectangle(x, y, 1, 0.5), 2500.0) for x, y in places]
+    ground = PlaneBlock(rectangle(-1, -1, 9, 1), 2500.0, fixed=True)
+    model = PlaneModel([ground, *bricks], gravity=(0.0, -9.81), found=ContactSprings(1e11, 4e10, 0.5))
+    result = solve_plane(model, Scheme(0.25, 0.5, 1.0, 1e-3, "consistent"), 5, compiled=False)
+    assert not result.cuts.any()
+    assert result.normal[3:].sum(axis=1) == pytest.approx([144193.2498, 1839256.5815, 2977094.9564], rel=1e-7)
