@@ -121,7 +121,7 @@ def _outline(blocks: Sequence[Block], joints: Sequence[Joint]) -> Iterator[Piece
 
 
 def _on_line(outline: Sequence[Piece], start: Point, end: Point, what: str) -> list[Piece]:
-    """What lies of the outline between two points of a line."""
+    """Return what lies of the outline between two points of a line."""
     length = math.dist(start, end)
     if not length > 0:
         raise ValueError(f"{what}: must have two ends, got {start!r} and {end!r}")

@@ -498,7 +498,7 @@ def accept(
         set_rows(march, before, near)
         add_push(march, rolling.after.force)
     end_modes(march, length, start, before, after, len(march.body.k))
-    move(rolling, before, rolling.D)
+    displace(rolling, before, rolling.D)
     copy(rolling.q, after.q)
     copy_matrix(rolling.turn.end, after.Q)
     place_corners(rolling, rolling.q, rolling.turn.end, room.end, rolling.place)

@@ -59,30 +59,30 @@ def find_in_band(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, w
         agree = True
         for r in range(m):
             state = tried[r]
-            here = force[r]
-            apart = 0.0
+            row_force = force[r]
+            z = 0.0
             if state == INSIDE:
-                opening[r] = 0.0 - here * compliance[r]  # no sum: a closed row keeps its digits
+                opening[r] = 0.0 - row_force * compliance[r]  # no sum: a closed row keeps its digits
                 slip[r] = 0.0
-                if lower[r] <= here <= upper[r]:
+                if lower[r] <= row_force <= upper[r]:
                     continue
             else:
-                apart = q[r] + own[r] * here
+                z = q[r] + own[r] * row_force
                 if r > 0:
-                    apart += beside[r - 1] * force[r - 1]
+                    z += beside[r - 1] * force[r - 1]
                 if r + 1 < m:
-                    apart += beside[r] * force[r + 1]
+                    z += beside[r] * force[r + 1]
                 if opens[r] == 1:
-                    opening[r] = apart
+                    opening[r] = z
                     slip[r] = 0.0
                 else:
-                    stretch = compliance[r] * here
-                    apart += stretch
+                    stretch = compliance[r] * row_force
+                    z += stretch
                     opening[r] = 0.0 - stretch
-                    slip[r] = apart
-                if state * apart <= 0:  # as its bound has it
+                    slip[r] = z
+                if state * z <= 0:  # as its bound has it
                     continue
-            new = next_state(state, here, apart, own[r] + compliance[r], lower[r], upper[r], opens[r], 0.0, slack)
+            new = next_state(state, row_force, z, own[r] + compliance[r], lower[r], upper[r], opens[r], 0.0, slack)
             if new != state and (agree or solves <= laws.together):
                 tried[r] = new
                 agree = False
@@ -112,24 +112,24 @@ def solve_in_band(
     for r in range(m):
         state = tried[r]
         if state == INSIDE:
-            here = own[r] + compliance[r]
-            push = 0.0 - q[r]
+            diagonal = own[r] + compliance[r]
+            right_side = 0.0 - q[r]
             if r > 0:
-                across = beside[r - 1]
+                coupled = beside[r - 1]
                 if last == INSIDE:
-                    factor = across / pivot[r - 1]
-                    here -= factor * across
-                    push -= factor * right[r - 1]
+                    factor = coupled / pivot[r - 1]
+                    diagonal -= factor * coupled
+                    right_side -= factor * right[r - 1]
                 else:
-                    push -= across * force[r - 1]
-            pivot[r] = here
-            right[r] = push
+                    right_side -= coupled * force[r - 1]
+            pivot[r] = diagonal
+            right[r] = right_side
         else:
             force[r] = lower[r] if state == LOWER else upper[r]
         last = state
     for r in range(m - 1, -1, -1):
         if tried[r] == INSIDE:
-            push = right[r]
+            right_side = right[r]
             if r + 1 < m:
-                push -= beside[r] * force[r + 1]
-            force[r] = push / pivot[r]
+                right_side -= beside[r] * force[r + 1]
+            force[r] = right_side / pivot[r]

@@ -333,12 +333,12 @@ def write_flexibility(march: March, weight: float, length: Length) -> None:
         for e in range(len(row)):
             softened[e] = weight * row[e] * (inverse[first + e] * mobility[first + e])
         for s in range(r, min(r + 2, m) if laws.banded else m):
-            other = body.weight[s]
+            later = body.weight[s]
             ahead = body.first[s] - first
             entry = 0.0
             if ahead >= 0:  # a row that begins earlier than one before it shares no modes with it
                 for e in range(len(row) - ahead):
-                    entry += softened[ahead + e] * other[e]
+                    entry += softened[ahead + e] * later[e]
             if laws.banded:
                 flexible.W[s - r][r] = entry
             else:
@@ -351,16 +351,14 @@ def write_flexibility(march: March, weight: float, length: Length) -> None:
 
 
 def coupling(body: Body, inverse: Vector, r: int, s: int) -> float:
-    """Return B_r s^-1 B_s'."""
-    if body.first[s] < body.first[r]:
-        r, s = s, r
-    one = body.weight[r]
-    other = body.weight[s]
+    """Return B_r s^-1 B_s' of a row and one that begins with no earlier mode."""
+    row = body.weight[r]
+    later = body.weight[s]
     first = body.first[s]
     ahead = first - body.first[r]
     total = 0.0
-    for e in range(len(one) - ahead):
-        total += one[e + ahead] * (inverse[first + e] * body.mobility[first + e]) * other[e]
+    for e in range(len(row) - ahead):
+        total += row[e + ahead] * (inverse[first + e] * body.mobility[first + e]) * later[e]
     return total
 
 

@@ -219,7 +219,7 @@ class PlaneModel:
         return self.blocks[block].name or f"block {block}"
 
     def edge_of(self, block: int, start: ArrayLike, end: ArrayLike, field: str = "edge") -> int:
-        """The edge of a block on which two points lie, by its first corner; a ValueError names the field if none."""
+        """Return the edge on which two points lie, by its first corner; a ValueError names the field if none."""
         corners = as_complex(self.blocks[block].block.corners)
         along = np.roll(corners, -1) - corners
         beside = np.zeros(len(corners))  # of the edges' lengths

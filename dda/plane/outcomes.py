@@ -29,7 +29,7 @@ class PlaneContact(NamedTuple):
 def unsettled_contacts(
     model: PlaneModel, march: March, history: History, reached: int, outcome: int
 ) -> tuple[PlaneContact, ...]:
-    """The contacts that ended a history, by the march as the step that failed left it, and the cuts of that step."""
+    """Return the contacts that ended a history, by the march as the failed step left it, and the cuts of that step."""
     found = march.method.detection.contacts
     if outcome == TOO_DEEP:
         return (found_contact(march, found.corner[0], found.edge[0]),)

@@ -277,7 +277,7 @@ def relatives(target: Target, scene: Variant, verdict: Verdict) -> list[Explanat
     both = np.array([run.displacement[target.rows, 0], run.pressure[target.rows, 0]])
     clean = Target(target.column, target.steps, target.rows, both[: len(target.recorded)])
     same = [f for f in _further(clean, verdict.others) if f.fit.misfit <= SAME_PROGRAM]
-    if set(best.ids) <= {*FACTORS, "height-factor"}:
+    if set(best.ids) <= {*FACTORS, "height-factor"}:  # a height by f is a density by f and a modulus by 1/f
         factors = {move.id: move for move in moves(target, scene) if move.id in FACTORS}
         pairs = [(factors[one], factors[two]) for one, two in itertools.combinations(factors, 2)]
         pairs = [pair for pair in pairs if set(best.ids).isdisjoint({move.id for move in pair})]

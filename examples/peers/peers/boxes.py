@@ -140,11 +140,11 @@ def record(
     for row in range(scene.time.steps):
         for part in range(per_row):
             advance((row * per_row + part) * step, step)
-        now = poses()
-        rows[row, :, :3] = now
+        reached = poses()
+        rows[row, :, :3] = reached
         if forces is not None:
             rows[row, :, 3] = forces()
-        if not np.isfinite(now).all():
+        if not np.isfinite(reached).all():
             break
     return named(scene, rows, per_row * scene.time.steps)
 
