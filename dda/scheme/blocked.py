@@ -22,7 +22,8 @@ import numpy as np
 from dda.model.arrays import Array, ArrayPair
 from dda.scheme import newmark
 from dda.scheme.newmark import Scheme
-from dda.scheme.roots import polynomial, state_matrix
+from dda.scheme.roots import polynomial
+from dda.scheme.spectral import critical_omega
 from dda.scheme.stage import Stage, Table
 
 BLOCK = 1024  # most steps in a row: its products stay in the cache
@@ -51,21 +52,10 @@ def why_stepped(scheme: Scheme, frequencies: Array) -> str | None:
 
 def _grows(scheme: Scheme, omega: float) -> bool:
     """Tell whether the step of a mode has a root outside the unit circle, or on it at -1."""
-    if scheme.damped:
-        _, slope, product = polynomial(scheme, omega).tolist()
-        return not (4 - 2 * slope + product > 0 and product - slope <= GROWTH_ROUNDING)
-    if scheme.table is not None:
-        change = state_matrix(scheme, omega * omega)
-        trace = 2 + float(np.trace(change))
-        determinant = 1 + float(np.trace(change) + np.linalg.det(change))
-        return not (1 + trace + determinant > 0 and determinant <= 1 + GROWTH_ROUNDING)
-    alpha = scheme.alpha
-    delta = scheme.delta
-    gg = scheme.gg
-    k = omega * omega
-    at_minus_one = 2 * (1 + gg) - k * (0.5 + gg * (2 * delta - 0.5) - 2 * alpha * (1 + gg))
-    determinant = gg * (1 + (0.5 - delta) * k / (1 + alpha * k))
-    return not (at_minus_one > 0 and abs(determinant) <= 1)
+    if scheme.table is None and not scheme.damped:
+        return not omega < critical_omega(scheme.alpha, scheme.delta, scheme.gg)
+    _, slope, product = polynomial(scheme, omega).tolist()
+    return not (4 - 2 * slope + product > 0 and product - slope <= GROWTH_ROUNDING)
 
 
 def blocked_modes(scheme: Scheme, frequencies: Array, rows: Array, steps: int) -> Array:
