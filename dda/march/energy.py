@@ -23,7 +23,7 @@ from dda.model.arrays import Array, Columns
 STORED = ("kinetic", "strain", "springs", "load")
 LOST = ("algorithmic", "kinetic damping", "switching", "friction")
 ENERGIES = STORED + LOST
-ALGORITHMIC, DAMPING, SWITCHING, FRICTION, GIVEN, IMPULSE, CONTACT = range(7)  # of the sums [J, N s]
+ALGORITHMIC, DAMPING, SWITCHING, FRICTION, GIVEN, IMPULSE, CONTACT = range(7)  # of the sums [J, N s], `LOST` first
 SUMS = 7
 DASHPOT = "dashpot"  # names of the sum `CONTACT` among the energies, where there are dashpots, or impacts
 IMPACT = "impact"
@@ -56,14 +56,11 @@ def energies_of(stored: Sequence[Array], sums: Array, by_balance: bool) -> Colum
     by_balance
         Whether the algorithm loses what the others leave of the total.
     """
-    kinetic, strain, springs, load = stored
-    load = load - sums[:, GIVEN]
-    algorithmic = sums[:, ALGORITHMIC]
-    damped = sums[:, DAMPING]
-    switching = sums[:, SWITCHING]
-    friction = sums[:, FRICTION]
+    parts = dict(zip(ENERGIES, [*stored, *sums.T[: len(LOST)]], strict=True))
+    parts["load"] = parts["load"] - sums[:, GIVEN]
     if by_balance:
-        total = kinetic + strain + springs + load
-        algorithmic = total[0] - total - damped - switching - friction - sums[:, CONTACT]
-    parts = (kinetic, strain, springs, load, algorithmic, damped, switching, friction)
-    return {name: part[1:] for name, part in zip(ENERGIES, parts, strict=True)}
+        total = sum(parts[name] for name in STORED)
+        parts["algorithmic"] = total[0] - total
+        for loss in (DAMPING, SWITCHING, FRICTION, CONTACT):
+            parts["algorithmic"] -= sums[:, loss]
+    return {name: part[1:] for name, part in parts.items()}
