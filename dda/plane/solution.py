@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from dda.contact.rows import INSIDE, LOWER, laws_of, rows_of, work_for
+from dda.contact.rows import INSIDE, LOWER, laws_of, work_for
 from dda.contact.unilateral import Unilateral
 from dda.march.compiled import ANEW, run_loop
-from dda.march.energy import SUMS, energies_of
-from dda.march.step import Body, Course, History, March, march_of
+from dda.march.energy import energies_of
+from dda.march.step import Body, Course, History, March, history_of, march_of, state_of
 from dda.model.arrays import Array
 from dda.model.checks import check_count
 from dda.plane.bodies import Blocks, as_complex, blocks_of, increments, poses_of, set_poses
@@ -101,17 +101,10 @@ def solve_plane(
     kept = steps // every
     c = len(march.method.places.law)
     b = len(model.blocks)
-    history = History(
-        motion=np.zeros((kept + 1, STATE * b + (1 + c) * march.method.finds)),  # and which contacts are found
-        force=np.zeros((kept + 1, 2 * c)),
-        opening=np.zeros((kept + 1, 2 * c)),
-        path=np.zeros((kept + 1, c)),
-        slip=np.zeros((steps + 1, 0)),
-        state=np.zeros((kept + 1, 2 * c), dtype=np.int8),
-        solves=np.zeros(steps + 1, dtype=np.int64),
-        cuts=np.zeros(steps + 1, dtype=np.int64),
-        sums=np.zeros((steps + 1, SUMS)),
-    )
+    each = history_of(steps, 0, 0, 0, True)  # what is kept of every step
+    numbers = STATE * b + (1 + c) * march.method.finds  # of blocks, and which contacts are found
+    history = history_of(kept, numbers, c, 2 * c, False)
+    history = history._replace(slip=each.slip, solves=each.solves, cuts=each.cuts, sums=each.sums)
     touching = len(model.contacts) + len(model.bonds) if model.found is None else 3 * b
     # 200,000 steps of a block or a contact in plain Python, some 20 s, pay for compiling
     weight = steps * (b + touching) // 10 if compiled is None else compiled * ANEW
@@ -213,7 +206,7 @@ def plane_march(model: PlaneModel, scheme: Scheme, every: int) -> March:
         spin=np.zeros(4),
         ground=np.zeros((m, 2)),
         springs=springs,
-        begun=state_of(len(k), b, np.zeros(m)),
+        begun=at_rest(len(k), b, c),
         made=np.zeros(1, dtype=np.int64),
         dropped=np.zeros(1),
         dense=dense,
@@ -231,15 +224,13 @@ def plane_march(model: PlaneModel, scheme: Scheme, every: int) -> March:
     room = march.room._replace(free=np.zeros(m))
     of_equations = ("A", "right", "slope", "newton", "newton_right")
     work = work_for(c, m, banded=True)._replace(**{name: getattr(march.work, name) for name in of_equations})
-    return march._replace(between=state_of(len(k), b, np.zeros(m)), room=room, laws=laws, work=work)
+    return march._replace(between=at_rest(len(k), b, c), room=room, laws=laws, work=work)
 
 
-def state_of(modes: int, blocks: int, opening: Array) -> PlaneState:
-    """Return a state at rest."""
-    m = len(opening)
-    z, p, a, R = np.zeros((4, modes))
-    rows = rows_of(opening, np.where(opening > 0, LOWER, INSIDE))
-    return PlaneState(z, p, a, R, np.zeros(m), rows, np.zeros((blocks, 6)), np.zeros(m // 2), np.zeros(m))
+def at_rest(modes: int, blocks: int, contacts: int) -> PlaneState:
+    """Return a state at rest, without contact forces."""
+    none = np.zeros(2 * contacts)
+    return PlaneState(*state_of(modes, none, none), np.zeros((blocks, 6)), np.zeros(contacts), none)
 
 
 def ramps_of(model: PlaneModel) -> list[float]:
@@ -353,7 +344,7 @@ def start_of(model: PlaneModel, scheme: Scheme, march: March, course: Course) ->
     plane = march.method
     blocks = plane.blocks
     places = plane.places
-    state = state_of(len(march.body.k), len(model.blocks), np.zeros(2 * len(places.law)))
+    state = at_rest(len(march.body.k), len(model.blocks), len(places.law))
     set_poses(blocks, state.q, plane.D, plane.chords, plane.ends)
     place_contacts(blocks, state.q, plane.ends, places)
     touching = np.where(np.abs(places.gap) <= TOUCH * plane.size, 0.0, places.gap)
