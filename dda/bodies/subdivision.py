@@ -14,7 +14,7 @@ from dda.bodies.joints import FIXED, Joint, Point, common_part
 from dda.bodies.two_block import TwoBlockModel
 from dda.contact.springs import base_directions
 from dda.model.block import Block
-from dda.model.checks import check_positive
+from dda.model.checks import check_among, check_count, check_positive
 from dda.model.load import at_once, pressed_part
 
 Pattern = Literal["squares", "triangles"]
@@ -88,12 +88,9 @@ def base_share(length: float, a: float) -> float:
 
 def _check(model: TwoBlockModel, columns: int, rows: int, glue: float, pattern: str) -> None:
     at_once(model.load, "sub-blocks")
-    for field, count in (("columns", columns), ("rows", rows)):
-        if count < 1:
-            raise ValueError(f"{field}: must be at least 1, got {count!r}")
+    check_count(columns=columns, rows=rows)
     check_positive(glue=glue)
-    if pattern not in ("squares", "triangles"):
-        raise ValueError(f"pattern: must be 'squares' or 'triangles', got {pattern!r}")
+    check_among(("squares", "triangles"), pattern=pattern)
     turns = model.block.turns
     if len(turns) != 4 or np.any(turns <= 0):
         raise ValueError(f"vertices: only convex quadrilaterals are cut into sub-blocks, got {len(turns)} corners")

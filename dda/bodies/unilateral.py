@@ -27,7 +27,7 @@ from dda.march.methods import Method, make_augmented_steps, make_conserving_step
 from dda.march.run import run
 from dda.march.step import History, course_of, march_of
 from dda.model.arrays import Array, Columns
-from dda.model.checks import check_count, check_finite, check_positive
+from dda.model.checks import check_among, check_count, check_finite, check_positive, check_share
 from dda.model.load import LoadedBlock, at_once
 from dda.result.contact_result import ContactResult, run_fields
 from dda.result.result import check_request, step_times
@@ -153,16 +153,15 @@ class UnilateralOptions:
     rotation: str = EXACT  # or "first-order": the outline of a step moves by x - r y, y + r x, and grows
 
     def __post_init__(self) -> None:
-        for field, known in (("rule", RULES), ("rotation", (EXACT, FIRST_ORDER))):
-            if getattr(self, field) not in known:
-                raise ValueError(f"{field}: must be among {', '.join(known)}, got {getattr(self, field)!r}")
+        check_among(RULES, rule=self.rule)
+        check_among((EXACT, FIRST_ORDER), rotation=self.rotation)
         if (self.rule == IMPACT) != (self.restitution is not None):
             raise ValueError(
                 f"restitution: goes with rule = {IMPACT!r}, which needs it, "
                 f"got {self.restitution!r} with rule = {self.rule!r}"
             )
-        if self.restitution is not None and not 0 <= self.restitution <= 1:
-            raise ValueError(f"restitution: must be from 0 to 1, got {self.restitution!r}")
+        if self.restitution is not None:
+            check_share(restitution=self.restitution)
         check_positive(penetration=self.penetration)
         check_count(pass_limit=self.pass_limit, solve_limit=self.solve_limit)
         if not 0 < self.cut < 1:

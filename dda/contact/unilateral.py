@@ -23,7 +23,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from dda.model.checks import check_not_negative
+from dda.model.checks import check_among, check_not_negative
 
 CONSISTENT = "consistent"
 LAGGED = "lagged"
@@ -68,11 +68,11 @@ class Unilateral:
         check_not_negative(cohesion=self.cohesion, damping=self.damping)
         if self.damping:
             self._check_dashpot()
-        if self.rules not in (CONSISTENT, LAGGED):
-            raise ValueError(f"rules: must be {CONSISTENT} or {LAGGED}, got {self.rules!r}")
+        check_among((CONSISTENT, LAGGED), rules=self.rules)
         if self.friction is None:
             if self.cohesion or self.rules == LAGGED:
-                raise ValueError(f"friction: must be given with cohesion or {LAGGED} rules, got None")
+                what = f"cohesion = {self.cohesion!r}" if self.cohesion else f"{LAGGED} rules"
+                raise ValueError(f"friction: must be given with {what}, got None")
             return
         check_not_negative(friction=self.friction)
         if self.shear == 0:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dda.model.arrays import Array, ArrayPair
+from dda.model.checks import check_number
 from dda.model.material import Material
 from dda.model.polygon import Section, checked_polygon, section
 
@@ -67,18 +68,8 @@ class Block:
     def edge(self, index: int) -> ArrayPair:
         """Return the two ends of edge `index`, from corner `index` to the next [m]; a ValueError if there is none."""
         n = len(self.corners)
-        if not 0 <= index < n:
-            raise ValueError(f"edge: must be between 0 and {n - 1}, got {index!r}")
+        check_number("edge", index, n)
         return self.corners[index], self.corners[(index + 1) % n]
-
-    def check_edges(self, base: int, top: int) -> None:
-        """Raise ValueError unless base and top are two edges of the block."""
-        n = len(self.corners)
-        for name, edge in (("base", base), ("top", top)):
-            if not 0 <= edge < n:
-                raise ValueError(f"{name}: must be an edge between 0 and {n - 1}, got {edge!r}")
-        if base == top:
-            raise ValueError(f"top: must differ from base, got {top!r}")
 
     def T(self, x: float, y: float) -> Array:
         """Return the 2 x 6 displacement matrix of eq. (3) at the point (x, y) [m]."""

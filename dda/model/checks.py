@@ -38,11 +38,21 @@ def check_count(**values: int) -> None:
     _check("a positive integer", lambda n: isinstance(n, int) and not isinstance(n, bool) and n > 0, values)
 
 
+def check_among(known: Sequence[str], **values: str) -> None:
+    """Raise ValueError unless all values are among the known ones."""
+    _check(f"among {', '.join(known)}", lambda value: value in known, values)
+
+
 def check_columns(known: Sequence[str], columns: Sequence[str]) -> None:
     """Raise ValueError unless every column is known."""
     for name in columns:
-        if name not in known:
-            raise ValueError(f"columns: must be among {', '.join(known)}, got {name!r}")
+        check_among(known, columns=name)
+
+
+def check_number(field: str, number: int, count: int) -> None:
+    """Raise ValueError unless a number is one of so many."""
+    if not 0 <= number < count:
+        raise ValueError(f"{field}: must be between 0 and {count - 1}, got {number!r}")
 
 
 def check_damping(damped: bool, moving: bool) -> None:

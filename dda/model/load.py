@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from dda.model.arrays import Array, ArrayPair
 from dda.model.block import Block
-from dda.model.checks import check_finite, check_not_negative
+from dda.model.checks import check_finite, check_not_negative, check_number
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,7 +165,10 @@ class LoadedBlock:
 
     def check(self) -> None:
         """Check the loads and the edges."""
-        self.block.check_edges(self.base, self.top)
+        for field in ("base", "top"):
+            check_number(field, getattr(self, field), len(self.block.corners))
+        if self.base == self.top:
+            raise ValueError(f"top: must differ from base, got {self.top!r}")
         pressed_part(*self.block.edge(self.top), self.load.eccentricity)
 
     def __getattr__(self, name: str) -> Any:

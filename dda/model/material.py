@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from dda.model.checks import check_positive
+from dda.model.checks import check_among, check_positive
 
 Hypothesis = Literal["plane stress", "plane strain"]
 
@@ -28,8 +28,7 @@ class Material:
 
     def __post_init__(self) -> None:
         check_positive(density=self.density, young=self.young)
-        if self.hypothesis not in ("plane stress", "plane strain"):
-            raise ValueError(f'hypothesis: must be "plane stress" or "plane strain", got {self.hypothesis!r}')
+        check_among(("plane stress", "plane strain"), hypothesis=self.hypothesis)
         strain = self.hypothesis == "plane strain"
         if not (-1 < self.poisson < 0.5 or (self.poisson == 0.5 and not strain)):
             rule = "-1 < mu < 0.5 in plane strain" if strain else "-1 < mu <= 0.5 in plane stress"

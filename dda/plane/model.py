@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from dda.contact.unilateral import Unilateral
 from dda.model.arrays import Array
 from dda.model.block import Block
-from dda.model.checks import check_finite, check_not_negative
+from dda.model.checks import check_finite, check_not_negative, check_number
 from dda.model.load import BaseMotion
 from dda.model.material import Hypothesis, Material
 from dda.plane.bodies import as_complex
@@ -88,17 +89,9 @@ class ContactSprings:
     tension: float = 0.0  # [N]
 
     def __post_init__(self) -> None:
-        if not self.stiffness > 0:
-            raise ValueError(f"stiffness: must be positive, got {self.stiffness!r}")
-        check_not_negative(shear=self.shear, cohesion=self.cohesion, tension=self.tension)
-        if self.friction is None:
-            if self.cohesion:
-                raise ValueError(f"friction: must be given with cohesion, got None with cohesion = {self.cohesion!r}")
-            return
-        check_not_negative(friction=self.friction)
-        if self.shear == 0:
-            raise ValueError("shear: must be positive with friction, got 0")
-        if self.tension * self.friction > self.cohesion:
+        Unilateral(self.stiffness, self.shear, friction=self.friction, cohesion=self.cohesion)  # which checks these
+        check_not_negative(tension=self.tension)
+        if self.friction and self.tension * self.friction > self.cohesion:
             most = f"cohesion / friction = {self.cohesion / self.friction:g}"
             raise ValueError(f"tension: must not exceed {most}, got {self.tension!r}")
 
@@ -238,9 +231,3 @@ class PlaneModel:
             raise ValueError(f"{field}.{second}: must be another block than {first}, got {j!r}")
         if self.blocks[i].held and self.blocks[j].held:
             raise ValueError(f"{field}.{second}: one of two blocks must move, got {self.name_of(i)}, {self.name_of(j)}")
-
-
-def check_number(field: str, number: int, count: int) -> None:
-    """Raise ValueError unless a number is one of so many."""
-    if not 0 <= number < count:
-        raise ValueError(f"{field}: must be between 0 and {count - 1}, got {number!r}")

@@ -27,7 +27,7 @@ from typing import Literal
 import numpy as np
 
 from dda.model.arrays import Array, ArrayPair
-from dda.model.checks import check_not_negative, check_positive, check_share
+from dda.model.checks import check_among, check_not_negative, check_positive, check_share
 from dda.scheme.stage import (
     Real,
     Stage,
@@ -73,8 +73,7 @@ class Scheme:
         check_share(gg=self.gg)
         check_positive(step=self.step)
         check_not_negative(mass_damping=self.mass_damping, stiffness_damping=self.stiffness_damping)
-        if self.start not in ("zero", "consistent"):
-            raise ValueError(f'start: must be "zero" or "consistent", got {self.start!r}')
+        check_among(("zero", "consistent"), start=self.start)
         if self.table is None:
             return
         if self.damped:
