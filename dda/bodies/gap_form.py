@@ -26,7 +26,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from dda.contact.springs import Contact, base_directions
+from dda.contact.springs import Contact, base_axes
 from dda.linear.natural_modes import free_modes, graded_modes
 from dda.model.arrays import Array, ArrayPair, Columns, without_rounding
 from dda.model.block import Block
@@ -149,9 +149,10 @@ def modal_form(form: GapForm) -> ModalForm:
 
 def gap_form(block: Block, contact: Contact, base: int, top: int, load: Load) -> GapForm:
     """Assemble the two-block model in contact-gap coordinates."""
-    tangent, normal, a = base_directions(block, base)
-    axes = np.array([tangent, normal])
-    local = (block.corners - block.edge(base)[0]) @ axes.T - np.array([a / 2, 0.0])
+    start, end = block.edge(base)
+    a = float(np.hypot(*(end - start)))
+    axes = base_axes(block, base)
+    local = (block.corners - start) @ axes.T - np.array([a / 2, 0.0])
     moments = _moments(area_integrals(local))
     moves = _moves(block.material.contraction)
     rho = block.material.density

@@ -18,7 +18,7 @@ import numpy as np
 
 from dda.bodies.gap_form import elastic_stiffness, gap_form
 from dda.contact.rows import INSIDE, LOWER
-from dda.contact.springs import Contact, base_directions
+from dda.contact.springs import Contact, base_axes
 from dda.linear.natural_modes import free_modes
 from dda.march.step import Body, History, State, state_of
 from dda.model.arrays import Array, Columns
@@ -56,8 +56,8 @@ def opening_block(model: LoadedBlock, velocity: float = 0.0, full: bool = False)
     """Return one block over corners that open; `velocity` only tells what moves, `full` keeps all unknowns."""
     block = model.block
     load = model.load
-    tangent, normal, a = base_directions(block, model.base)
-    axes = np.array([tangent, normal])
+    a = model.base_length
+    axes = base_axes(block, model.base)
     form = gap_form(block, Contact(1.0), model.base, model.top, load)  # of its springs nothing is used below
     pushed = form.F + velocity * (form.M[:, :2] @ axes[:, 1])
     if load.motion is not None:

@@ -21,7 +21,7 @@ from dda.bodies.subdivision import Pattern, subdivided
 from dda.bodies.two_block import TwoBlockModel
 from dda.bodies.unilateral import NEWMARK, Request, UnilateralModel
 from dda.contact.rows import laws_of
-from dda.contact.springs import Contact, base_directions
+from dda.contact.springs import Contact, base_axes
 from dda.contact.unilateral import CONSISTENT, LAGGED, Unilateral
 from dda.march.compiled import COMPILED, PLAIN
 from dda.march.energy import energies_of
@@ -115,18 +115,18 @@ def opening_subdivided(
     load = replace(model.load, motion=None)
     locked = TwoBlockModel(model.block, Contact(1.0), load, model.base, model.top)
     cut = subdivided(locked, columns, rows, glue, pattern)
-    tangent, normal, _ = base_directions(model.block, model.base)
+    axes = base_axes(model.block, model.base)
     supports = [joint for joint in cut.joints if joint.second == FIXED]
     ends = [(joint.first, place) for joint in supports for place in (joint.start, joint.end)]
     contact = np.zeros((2, len(ends), len(cut.blocks), 6))
     for i, (number, place) in enumerate(ends):
-        contact[:, i, number] = np.array([normal, tangent]) @ cut.blocks[number].T(*place)
+        contact[:, i, number] = axes[::-1] @ cut.blocks[number].T(*place)
     return OpeningSystem(
         system=replace(cut, joints=[joint for joint in cut.joints if joint.second != FIXED]),
         contact=model.contact,
         share=supports[0].normal,  # a side that is cut evenly has edges of one length
         rows=contact.reshape(2, len(ends), -1),
         velocity=model.velocity,
-        axes=np.array([tangent, normal]),
+        axes=axes,
         motion=model.load.motion,
     )

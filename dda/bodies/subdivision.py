@@ -12,7 +12,7 @@ import numpy as np
 from dda.bodies.block_system import BlockSystem, SurfaceLoad
 from dda.bodies.joints import FIXED, Joint, Point, common_part
 from dda.bodies.two_block import TwoBlockModel
-from dda.contact.springs import base_directions
+from dda.contact.springs import base_axes
 from dda.model.block import Block
 from dda.model.checks import check_among, check_count, check_positive
 from dda.model.load import at_once, pressed_part
@@ -45,7 +45,8 @@ def subdivided(model: TwoBlockModel, columns: int, rows: int, glue: float, patte
     contact = model.contact
     place = _corner_map(model, columns, rows)
     cells = _cells(columns, rows, pattern)
-    _, normal, a = base_directions(model.block, model.base)
+    a = model.base_length
+    _, normal = base_axes(model.block, model.base)
     pressed = [end.tolist() for end in pressed_part(*model.block.edge(model.top), load.eccentricity)]
     edges: dict[tuple[Corner, Corner], int] = {}
     for number, cell in enumerate(cells):

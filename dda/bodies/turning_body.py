@@ -31,7 +31,7 @@ import numpy as np
 
 from dda.bodies.gap_form import free_block
 from dda.contact.dense import Matrix, Vector
-from dda.contact.springs import base_directions
+from dda.contact.springs import base_axes
 from dda.model.arrays import Array
 from dda.model.block import Block
 
@@ -155,8 +155,7 @@ def body(block: Block, base: int) -> Body:
     ValueError
         If the outline is not convex.
     """
-    tangent, normal, _ = base_directions(block, base)
-    frame = np.array([tangent, normal])
+    frame = base_axes(block, base)
     start = block.edge(base)[0]
     placed = Block((block.corners - start) @ frame.T, block.material)
     if np.any(placed.turns < 0):

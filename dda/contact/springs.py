@@ -41,12 +41,11 @@ class Contact:
         return self.stiffness if self.shear_stiffness is None else self.shear_stiffness
 
 
-def base_directions(block: Block, base: int) -> tuple[Array, Array, float]:
-    """Return unit tangent, unit inward normal and length [m] of an edge."""
+def base_axes(block: Block, base: int) -> Array:
+    """Return unit tangent and unit inward normal of an edge, a row each."""
     start, end = block.edge(base)
-    length = float(np.hypot(*(end - start)))
-    tangent = (end - start) / length
-    return tangent, np.array([-tangent[1], tangent[0]]), length
+    x, y = (end - start) / np.hypot(*(end - start))
+    return np.array([[x, y], [-y, x]])
 
 
 def spring_vectors(block: Block, base: int) -> ArrayPair:
@@ -57,7 +56,7 @@ def spring_vectors(block: Block, base: int) -> ArrayPair:
     normal, shear : (2, 6) arrays
         Rows for the edge's first end M and second end N; a row times D is the spring's stretch [m].
     """
-    tangent, normal, _ = base_directions(block, base)
+    tangent, normal = base_axes(block, base)
     T = [block.T(float(x), float(y)) for x, y in block.edge(base)]
     return np.array([normal @ t for t in T]), np.array([tangent @ t for t in T])
 
