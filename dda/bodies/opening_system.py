@@ -8,6 +8,7 @@ a sub-block has a contact point at each end, with its share p l / a of the corne
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from time import perf_counter
 from typing import ClassVar
@@ -19,7 +20,7 @@ from dda.bodies.glued_step import glued_march, run_glued
 from dda.bodies.joints import FIXED
 from dda.bodies.subdivision import Pattern, subdivided
 from dda.bodies.two_block import TwoBlockModel
-from dda.bodies.unilateral import NEWMARK, Request, UnilateralModel
+from dda.bodies.unilateral import NEWMARK, UnilateralModel, UnilateralOptions
 from dda.contact.rows import laws_of
 from dda.contact.springs import Contact, base_axes
 from dda.contact.unilateral import CONSISTENT, LAGGED, Unilateral
@@ -30,6 +31,7 @@ from dda.model.arrays import Array, Columns
 from dda.model.load import BaseMotion
 from dda.result.contact_result import ContactResult, run_fields
 from dda.result.result import step_times
+from dda.scheme.newmark import Scheme
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,35 +54,31 @@ class OpeningSystem:
         if law.rules == LAGGED:
             raise ValueError(f"rules: sub-blocks take {CONSISTENT} friction alone, got {LAGGED!r}")
 
-    def history(self, request: Request) -> ContactResult:
+    def history(self, scheme: Scheme, steps: int, columns: Sequence[str], options: UnilateralOptions) -> ContactResult:
         """Make the steps; all unknowns are kept."""
         import scipy.sparse.linalg  # noqa: F401  (before the clock starts)
 
         began = perf_counter()
-        scheme = request.scheme
-        options = request.options
         law = self.contact
         equations = self.system.equations
         points = self.rows.shape[1]
         rows = np.concatenate(self.rows if law.shear else self.rows[:1])
         laws = laws_of(law, points, len(rows), options.solve_limit, self.share)
         load = self.system.load_size * equations.F
-        by_modes = np.concatenate([equations.rows(request.columns)[0], self.rows[1] @ equations.shapes, [load]])
+        by_modes = np.concatenate([equations.rows(columns)[0], self.rows[1] @ equations.shapes, [load]])
         observed = by_modes, np.zeros((len(by_modes), len(equations.pressure)))
-        march = glued_march(
-            equations, self.system.load_size, scheme, laws, rows, observed, options.energies, request.steps
-        )
+        march = glued_march(equations, self.system.load_size, scheme, laws, rows, observed, options.energies, steps)
         glue = march.method
         nonzeros = glue.solver(march.last.numbers, 1.0).nonzeros
         opened = np.where(np.arange(len(rows)) < points, law.gap, 0.0)
         upwards = self.velocity * equations.rigid[:, 1]
         course = course_of(self.motion and self.motion.along(self.axes), 0.0)
         ready = perf_counter()
-        history, outcome = run_glued(march, course, request.steps, opened, upwards, np.zeros(2), options.cut)
+        history, outcome = run_glued(march, course, steps, opened, upwards, np.zeros(2), options.cut)
         reached = len(history.solves) - 1
         pressure = history.force[1:, :points].sum(axis=1) / self.system.base_length
         mass = math.fsum(block.total_mass for block in self.system.blocks)
-        _, slides, done, momentum, stored = np.split(history.motion.T, np.cumsum([len(request.columns), points, 1, 2]))
+        _, slides, done, momentum, stored = np.split(history.motion.T, np.cumsum([len(columns), points, 1, 2]))
 
         def slide() -> Array:
             base = 0.0 if self.motion is None else self.motion.at(step_times(scheme, reached)) @ self.axes[0]
@@ -95,7 +93,7 @@ class OpeningSystem:
             **run_fields(history, outcome, scheme, [f"stepped, {how}: contact opens and closes"], (began, ready)),
             columns={
                 name: (pressure if name == "contact_pressure" else history.motion[1:, i]) + 0.0
-                for i, name in enumerate(request.columns)
+                for i, name in enumerate(columns)
             },
             unknowns=len(equations.F),
             nonzeros=nonzeros,

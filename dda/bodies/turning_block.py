@@ -5,6 +5,7 @@ A step is cut where the contacts have no single state.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from time import perf_counter
@@ -23,7 +24,7 @@ from dda.bodies.turning_body import (
     turned,
 )
 from dda.bodies.turning_step import STATE, RollingState, make_steps, rolling_march
-from dda.bodies.unilateral import NEWMARK, Request
+from dda.bodies.unilateral import NEWMARK, UnilateralOptions
 from dda.contact.rows import INSIDE, LOWER, Laws, laws_of
 from dda.contact.unilateral import Unilateral
 from dda.march.energy import IMPULSE, energies_of
@@ -124,11 +125,9 @@ class RollingModel(LoadedBlock):
         state = state_of(6, opening, np.where(opening > 0, LOWER, INSIDE))
         return RollingState(*state._replace(p=p, a=a, R=R), q, Q)
 
-    def history(self, request: Request) -> RollingResult:
+    def history(self, scheme: Scheme, steps: int, columns: Sequence[str], options: UnilateralOptions) -> RollingResult:
         """Make the steps."""
         began = perf_counter()
-        scheme = request.scheme
-        options = request.options
         body = self.body
         law = self.contact
         with np.errstate(all="ignore"):  # overflow is an outcome
@@ -157,7 +156,7 @@ class RollingModel(LoadedBlock):
             options.rotation,
         )
         ready = perf_counter()
-        ran = run(march, start, course_of(base, 0.0), request.steps, make_steps, STATE, energies=True, cut=options.cut)
+        ran = run(march, start, course_of(base, 0.0), steps, make_steps, STATE, energies=True, cut=options.cut)
         history = ran.history
         reached = len(history.solves) - 1
         motion = motion_of(history.motion)
@@ -172,7 +171,7 @@ class RollingModel(LoadedBlock):
         note = f"stepped, {ran.how}: outline and contacts anew at every step, {options.rotation} rotation"
         return RollingResult(
             **run_fields(history, ran.outcome, scheme, [note], (began, ready)),
-            columns={name: values[name] for name in request.columns},
+            columns={name: values[name] for name in columns},
             unknowns=6,
             nonzeros=int(np.count_nonzero(body.M)),
             factorisations=ran.lengths,

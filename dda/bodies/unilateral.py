@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from time import perf_counter
-from typing import Any, ClassVar, NamedTuple, Protocol, TypeVar
+from typing import Any, ClassVar, Protocol, TypeVar
 
 import numpy as np
 
@@ -64,11 +64,9 @@ class UnilateralModel(LoadedBlock):
         """The block in the unknowns that move."""
         return opening_block(self, self.velocity)
 
-    def history(self, request: Request) -> ContactResult:
+    def history(self, scheme: Scheme, steps: int, columns: Sequence[str], options: UnilateralOptions) -> ContactResult:
         """Make the steps."""
         began = perf_counter()
-        scheme = request.scheme
-        options = request.options
         model = self
         law = model.contact
         if frictionless(law, options):  # no corner slides, even if `full` keeps the unknowns that could
@@ -95,11 +93,11 @@ class UnilateralModel(LoadedBlock):
         n = len(block.unknowns)
         loop = LOOPS.get(options.rule, make_steps)
         ready = perf_counter()
-        ran = run(march, start, course, request.steps, loop, 2 * n + rigid, options.energies, options.cut)
+        ran = run(march, start, course, steps, loop, 2 * n + rigid, options.energies, options.cut)
         history = ran.history
         reached = len(history.solves) - 1
         with np.errstate(all="ignore"):
-            values = {name: column(model, block, history, name, scheme.step) for name in request.columns}
+            values = {name: column(model, block, history, name, scheme.step) for name in columns}
         for name, moved in carried(motion, step_times(scheme, reached)).items():
             if name in values:
                 values[name] = values[name] + moved
@@ -168,15 +166,6 @@ class UnilateralOptions:
             raise ValueError(f"cut: must be between 0 and 1, got {self.cut!r}")
 
 
-class Request(NamedTuple):
-    """What is asked of a body on contact that opens."""
-
-    scheme: Scheme
-    steps: int
-    columns: Sequence[str]
-    options: UnilateralOptions
-
-
 class OpeningBody(Protocol[AnyResult]):
     """A body on contact that opens: one block, its sub-blocks, or a block that turns."""
 
@@ -186,7 +175,7 @@ class OpeningBody(Protocol[AnyResult]):
     def contact(self) -> Unilateral:
         """The law of its corners."""
 
-    def history(self, request: Request) -> AnyResult:
+    def history(self, scheme: Scheme, steps: int, columns: Sequence[str], options: UnilateralOptions) -> AnyResult:
         """Make the steps."""
 
 
@@ -220,7 +209,7 @@ def solve_unilateral(
     for field, holds, rule, value in requirements(model, scheme, options):
         if not holds:
             raise ValueError(f"{field}: {rule}, got {value}")
-    return model.history(Request(scheme, steps, columns, options))
+    return model.history(scheme, steps, columns, options)
 
 
 def column(model: UnilateralModel, block: OpeningBlock, history: History, name: str, step: float) -> Array:
