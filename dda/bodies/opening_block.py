@@ -16,12 +16,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dda.bodies.gap_form import elastic_stiffness, gap_form
+from dda.bodies.gap_form import GapForm, elastic_stiffness, gap_form
 from dda.contact.rows import INSIDE, LOWER
 from dda.contact.springs import Contact, base_axes
 from dda.linear.natural_modes import free_modes
 from dda.march.step import Body, History, State, state_of
-from dda.model.arrays import Array, Columns
+from dda.model.arrays import Array
 from dda.model.load import BaseMotion, LoadedBlock, load_share
 from dda.scheme.newmark import Scheme, initial_acceleration, late_momentum
 
@@ -33,18 +33,13 @@ SYMMETRIC = (EX, E2, W)  # of a symmetric motion
 class OpeningBlock:
     """M x'' + K x = F + multiplicity B' lambda of a block in n unknowns, and its free modes, x = shapes z."""
 
-    unknowns: tuple[str, ...]  # names of x
-    M: Array  # (n, n) inertia
-    K: Array  # (n,) diagonal of the elastic stiffness
-    F: Array  # (n,) load
+    form: GapForm  # names of x, M and F; its springs are not there
     B: Array  # (m, n) rows of contact: gaps, then ways
     ramp: float  # time in which the load rises from zero [s]
     axes: Array  # (2, 2) unit tangent of the base from M to N, and its normal into the block
     contacts: int  # 1 or 2
     multiplicity: float  # corners that a contact stands for
     start: Array  # (n,) x at t = 0
-    observers: Columns  # displacement column -> (n,) row over x - start
-    slide: Array  # (2, n) way of M and N along the base by x
     translation: Array  # (n, 2) x of a rigid translation by 1 m along the base and away from it
     body: Body
     shapes: Array  # (n, n) unknowns by the modes; zero where they are read from the rows
@@ -82,8 +77,7 @@ def opening_block(model: LoadedBlock, velocity: float = 0.0, full: bool = False)
         read[S, :c] = -1 / a, 1 / a
         read[U, c:] = 0.5
     read = read[kept]
-    K = elastic_stiffness(block.material, block.section.area)[kept]
-    k, shapes = free_modes(form.M, K)
+    k, shapes = free_modes(form.M, elastic_stiffness(block.material, block.section.area)[kept])
     across = np.arange(len(B)) < c
     translation = np.eye(6, 2)[kept]
     body = Body(
@@ -97,18 +91,13 @@ def opening_block(model: LoadedBlock, velocity: float = 0.0, full: bool = False)
         mobility=np.ones(len(k)),
     )
     return OpeningBlock(
-        unknowns=form.unknowns,
-        M=form.M,
-        K=K,
-        F=form.F,
+        form=form,
         B=B,
         ramp=load.ramp,
         axes=axes,
         contacts=c,
         multiplicity=2.0 / c,
         start=model.contact.gap * translation[:, 1],
-        observers={name: row for name, row in form.observers.items() if name != "contact_pressure"},
-        slide=slide,
         translation=translation,
         body=body,
         shapes=np.where(np.any(read != 0, axis=1)[:, None], 0.0, shapes),
@@ -143,7 +132,7 @@ def observed(block: OpeningBlock, row: Array, history: History, motion: BaseMoti
     read = row @ block.read
     total = history.motion[:, : len(block.shapes)] @ (row @ block.shapes) + history.opening @ read
     total += history.path @ read[c:]
-    if motion is not None and "U" in block.unknowns and len(block.B) == c:  # which no row of contact measures
+    if motion is not None and "U" in block.form.unknowns and len(block.B) == c:  # which no row of contact measures
         moved = motion.along(block.axes).at(step * np.arange(float(len(total))))
-        total -= row[block.unknowns.index("U")] * moved[:, 0]
+        total -= row[block.form.unknowns.index("U")] * moved[:, 0]
     return total

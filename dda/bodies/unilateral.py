@@ -90,7 +90,7 @@ class UnilateralModel(LoadedBlock):
         )
         motion = model.load.motion
         course = course_of(motion and motion.along(block.axes), block.ramp)
-        n = len(block.unknowns)
+        n = len(block.form.unknowns)
         loop = LOOPS.get(options.rule, make_steps)
         ready = perf_counter()
         ran = run(march, start, course, steps, loop, 2 * n + rigid, options.energies, options.cut)
@@ -103,7 +103,7 @@ class UnilateralModel(LoadedBlock):
                 values[name] = values[name] + moved
         notes = [f"stepped, {ran.how}: contact opens and closes"]
         if n < 6:
-            notes.insert(0, f"both corners as one, unknowns {', '.join(block.unknowns)}")
+            notes.insert(0, f"both corners as one, unknowns {', '.join(block.form.unknowns)}")
 
         def velocity() -> Array:
             momentum: Array = block.axes.T @ block.momentum @ history.motion[1:, n : 2 * n].T
@@ -113,12 +113,12 @@ class UnilateralModel(LoadedBlock):
             **run_fields(history, ran.outcome, scheme, notes, (began, ready)),
             columns=values,
             unknowns=n,
-            nonzeros=int(np.count_nonzero(block.M)),
+            nonzeros=int(np.count_nonzero(block.form.M)),
             factorisations=ran.lengths,
             contacts=block.contacts,
             multiplicity=block.multiplicity,
             base_contacts=(0, 1),
-            make_slide=lambda: block.slide @ unknowns_of(block, history, motion, scheme.step)[:, 1:],
+            make_slide=lambda: block.form.corners[0].T @ unknowns_of(block, history, motion, scheme.step)[:, 1:],
             make_velocity=velocity,
             step_passes=history.motion[1:, 2 * n].astype(int) if rigid else None,
             balance=(lambda: energies(model, block, laws, scheme, history, options.rule)) if options.energies else None,
@@ -216,7 +216,7 @@ def column(model: UnilateralModel, block: OpeningBlock, history: History, name: 
     """Return a column of every step."""
     if name == "contact_pressure":
         return np.asarray(history.force[1:, : block.contacts].sum(axis=1) / model.base_length + 0.0)
-    row = block.observers[name]
+    row = block.form.observers[name]
     return observed(block, row, history, model.load.motion, step)[1:] - row @ block.start + 0.0
 
 
@@ -233,13 +233,13 @@ def energies(
     They are those of `dda.march.energy`, with "dashpot" or "impact" where contact has one. Energy-conserving contact
     does the work U0 - U1 itself and loses nothing.
     """
-    n = len(block.unknowns)
+    n = len(block.form.unknowns)
     z = history.motion[:, :n]
     v = history.motion[:, n : 2 * n] / scheme.step
-    load = block.start @ block.F - observed(block, block.F, history, model.load.motion, scheme.step)
+    load = block.start @ block.form.F - observed(block, block.form.F, history, model.load.motion, scheme.step)
     if model.load.motion is not None:
         moved = model.load.motion.at(scheme.step * np.arange(float(len(z))))
-        load -= moved @ (block.axes.T @ block.translation.T @ block.F)
+        load -= moved @ (block.axes.T @ block.translation.T @ block.form.F)
     springs = history.force
     if model.contact.damping:
         springs = np.maximum(-history.opening, 0.0) / laws.compliance

@@ -25,7 +25,6 @@ from dda import (
     solve_unilateral,
 )
 from dda.bodies.turning_block import RollingModel
-from dda.linear.natural_modes import free_modes
 from dda.march import run as made
 from dda.march.compiled import run_loop
 from dda.march.step import steps_by
@@ -173,11 +172,9 @@ class OneBlock:
     @staticmethod
     def gap_rates(model, scheme, result):
         """Return w' from t = 0 on, (contacts, steps + 1)."""
-        form = model.reduced
-        c = form.contacts
-        n = len(form.unknowns)
-        _, shapes = free_modes(form.M, form.K)
-        return form.B[:c] @ shapes @ result.history.motion[:, n : 2 * n].T / scheme.step
+        block = model.reduced
+        n = len(block.shapes)
+        return block.body.weight[: block.contacts] @ result.history.motion[:, n : 2 * n].T / scheme.step
 
 
 class SubBlocks(OneBlock):
