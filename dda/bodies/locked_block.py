@@ -15,7 +15,7 @@ from dda.bodies.gap_form import GapForm, ModalForm, modal_form
 from dda.bodies.two_block import TwoBlockModel, carried
 from dda.model.arrays import Array
 from dda.model.checks import check_damping, check_share
-from dda.model.load import at_once, load_share
+from dda.model.load import at_once
 from dda.result.result import Result, bound_overflow, check_request, linear_result, step_times
 from dda.scheme.adaptive import adapted_modes
 from dda.scheme.blocked import blocked_modes, why_stepped
@@ -78,7 +78,7 @@ def solve(
             observed = rows @ adapted.modes
             damping = dict(zip(ADAPTIVE_COLUMNS, (adapted.discount, adapted.loss * size * size), strict=True))
         elif model.load.ramp:
-            shares = np.array([load_share(model.load.ramp, instant) for instant in scheme.instants(steps).tolist()])
+            shares = np.clip(scheme.instants(steps) / model.load.ramp, 0.0, 1.0)
             observed = rows @ stepped_modes(scheme, modal.frequencies, modal.load, steps, shares)
         else:
             observed = modal_histories(scheme, modal, rows, steps, blocked=stepped is None)

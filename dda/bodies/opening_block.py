@@ -22,7 +22,7 @@ from dda.contact.springs import Contact, base_axes
 from dda.linear.natural_modes import free_modes
 from dda.march.step import Body, History, State, state_of
 from dda.model.arrays import Array
-from dda.model.load import BaseMotion, LoadedBlock, load_share
+from dda.model.load import BaseMotion, LoadedBlock
 from dda.scheme.newmark import Scheme, initial_acceleration, late_momentum
 
 U, W, S, EX, E2, GXY = range(6)  # numbers of the unknowns
@@ -112,18 +112,13 @@ def start_of(block: OpeningBlock, scheme: Scheme, gap: float, velocity: float, a
     The block starts with the acceleration of its load `at_once`, or else as the scheme says.
     """
     dt = scheme.step
-    R = load_share(block.ramp, 0.0) * (dt * dt * block.body.loads[0])
+    R = (0.0 if block.ramp else dt * dt) * block.body.loads[0]
     a = R.copy() if at_once else initial_acceleration(scheme, R) + 0.0
     p = late_momentum(scheme, (dt * velocity) * (block.axes[:, 1] @ block.momentum), a)
     opening = np.zeros(len(block.B))
     opening[: block.contacts] = gap
     state = state_of(len(p), opening, np.where(opening > 0, LOWER, INSIDE))
     return state._replace(p=p, a=a, R=R)
-
-
-def unknowns_of(block: OpeningBlock, history: History, motion: BaseMotion | None, step: float) -> Array:
-    """Return the unknowns from t = 0 on, measured from the base, (n, steps + 1)."""
-    return np.array([observed(block, row, history, motion, step) for row in np.eye(len(block.shapes))])
 
 
 def observed(block: OpeningBlock, row: Array, history: History, motion: BaseMotion | None, step: float) -> Array:

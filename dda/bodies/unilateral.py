@@ -16,7 +16,7 @@ from typing import Any, ClassVar, Protocol, TypeVar
 
 import numpy as np
 
-from dda.bodies.opening_block import OpeningBlock, observed, opening_block, start_of, unknowns_of
+from dda.bodies.opening_block import OpeningBlock, observed, opening_block, start_of
 from dda.bodies.turning_body import EXACT, FIRST_ORDER
 from dda.bodies.two_block import carried
 from dda.contact.rows import Laws, laws_of
@@ -105,6 +105,10 @@ class UnilateralModel(LoadedBlock):
         if n < 6:
             notes.insert(0, f"both corners as one, unknowns {', '.join(block.form.unknowns)}")
 
+        def slide() -> Array:
+            ways = block.form.corners[0].T
+            return np.array([observed(block, row, history, motion, scheme.step)[1:] for row in ways])
+
         def velocity() -> Array:
             momentum: Array = block.axes.T @ block.momentum @ history.motion[1:, n : 2 * n].T
             return momentum / (model.block.total_mass * scheme.step)
@@ -118,7 +122,7 @@ class UnilateralModel(LoadedBlock):
             contacts=block.contacts,
             multiplicity=block.multiplicity,
             base_contacts=(0, 1),
-            make_slide=lambda: block.form.corners[0].T @ unknowns_of(block, history, motion, scheme.step)[:, 1:],
+            make_slide=slide,
             make_velocity=velocity,
             step_passes=history.motion[1:, 2 * n].astype(int) if rigid else None,
             balance=(lambda: energies(model, block, laws, scheme, history, options.rule)) if options.energies else None,

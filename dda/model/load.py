@@ -89,11 +89,6 @@ class Load:
         return max(abs(self.pressure), abs(self.traction), abs(weight * self.gravity))
 
 
-def load_share(ramp: float, time: float) -> float:
-    """Return the share of the loads that acts at a time, min(1, t / ramp); all of them at once without a ramp."""
-    return 1.0 if time >= ramp else time / ramp
-
-
 def at_once(load: Load, what: str) -> None:
     """Raise ValueError for a ramp where something knows loads only that act at once."""
     if load.ramp:
