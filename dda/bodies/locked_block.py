@@ -12,7 +12,7 @@ from time import perf_counter
 import numpy as np
 
 from dda.bodies.gap_form import GapForm, ModalForm, modal_form
-from dda.bodies.two_block import TwoBlockModel, carried
+from dda.bodies.two_block import TwoBlockModel
 from dda.model.arrays import Array
 from dda.model.checks import check_damping, check_share
 from dda.model.load import at_once
@@ -87,8 +87,7 @@ def solve(
         if motion is not None:  # what the base causes: its own displacement, and that of the block from it
             moved = modal.translation, motion.at(scheme.instants(steps))
             histories = stepped_modes(scheme, modal.frequencies, 0 * modal.load, steps, moved=moved)
-            base_columns = carried(motion, step_times(scheme, steps))
-            own = np.array([base_columns.get(name, np.zeros(steps)) for name in names])
+            own = form.rows(names)[1] @ motion.at(step_times(scheme, steps)).T
             bound_overflow(observed, size)
             observed += rows @ histories + own
             size = 1.0

@@ -7,11 +7,10 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from dda.bodies.gap_form import GapForm, gap_form
 from dda.contact.springs import Contact, contact_stiffness
-from dda.model.arrays import Array, Columns
+from dda.model.arrays import Array
 from dda.model.load import BaseMotion, LoadedBlock, directions_of, pressed_part
 from dda.result.result import COLUMNS
 
@@ -90,11 +89,3 @@ class TwoBlockModel(LoadedBlock):
     def reached(self) -> GapForm:
         """The equations without the unknowns that the load cannot reach."""
         return self.gap_form.reduced()
-
-
-def carried(motion: BaseMotion | None, instants: ArrayLike) -> Columns:
-    """Return what a moving base adds to the columns: its own displacement [m]."""
-    if motion is None:
-        return {}
-    moved = motion.at(instants)
-    return {"horizontal_displacement": moved[:, 0], "displacement": moved[:, 1]}

@@ -18,7 +18,6 @@ import numpy as np
 
 from dda.bodies.opening_block import OpeningBlock, observed, opening_block, start_of
 from dda.bodies.turning_body import EXACT, FIRST_ORDER
-from dda.bodies.two_block import carried
 from dda.contact.rows import Laws, laws_of
 from dda.contact.unilateral import Unilateral
 from dda.march.energy import CONTACT, DASHPOT, energies_of
@@ -30,7 +29,7 @@ from dda.model.arrays import Array, Columns
 from dda.model.checks import check_among, check_count, check_finite, check_positive, check_share
 from dda.model.load import LoadedBlock, at_once
 from dda.result.contact_result import ContactResult, run_fields
-from dda.result.result import check_request, step_times
+from dda.result.result import check_request
 from dda.scheme.newmark import Scheme
 
 NEWMARK = "newmark"
@@ -95,12 +94,8 @@ class UnilateralModel(LoadedBlock):
         ready = perf_counter()
         ran = run(march, start, course, steps, loop, 2 * n + rigid, options.energies, options.cut)
         history = ran.history
-        reached = len(history.solves) - 1
         with np.errstate(all="ignore"):
             values = {name: column(model, block, history, name, scheme.step) for name in columns}
-        for name, moved in carried(motion, step_times(scheme, reached)).items():
-            if name in values:
-                values[name] = values[name] + moved
         notes = [f"stepped, {ran.how}: contact opens and closes"]
         if n < 6:
             notes.insert(0, f"both corners as one, unknowns {', '.join(block.form.unknowns)}")
@@ -220,8 +215,12 @@ def column(model: UnilateralModel, block: OpeningBlock, history: History, name: 
     """Return a column of every step."""
     if name == "contact_pressure":
         return np.asarray(history.force[1:, : block.contacts].sum(axis=1) / model.base_length + 0.0)
-    row = block.form.observers[name]
-    return observed(block, row, history, model.load.motion, step)[1:] - row @ block.start + 0.0
+    (row,), (by_base,) = block.form.rows([name])
+    motion = model.load.motion
+    moved: Array = observed(block, row, history, motion, step)[1:] - row @ block.start + 0.0
+    if motion is not None:
+        moved += motion.at(step * np.arange(1.0, len(moved) + 1)) @ by_base
+    return moved
 
 
 def energies(
