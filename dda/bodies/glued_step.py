@@ -29,7 +29,7 @@ import numpy as np
 from dda.bodies.block_system import Equations, factor
 from dda.contact.rows import FOUND, INSIDE, LOWER, Flexibility, Laws, Rows, Solved, find, rows_of, unpair
 from dda.march.account import account_with
-from dda.march.compiled import as_lists, as_record, called_often
+from dda.march.compiled import as_lists, as_record, code_for
 from dda.march.energy import ALGORITHMIC, bulk_loss
 from dda.march.step import (
     Body,
@@ -215,7 +215,7 @@ def glued_march(
         paired=laws.paired,
         observed=(observed[0], observed[1] / dt**2),
         energies=energies,
-        compiled=called_often(find, records, steps * laws.contacts**2 // POINTS),
+        compiled=code_for(find, records, steps * laws.contacts**2 // POINTS),
         lag=lag,
         drag=drag,
         mass_factor=1 + scheme.delta * drag,

@@ -81,37 +81,35 @@ def run_loop(
         What does the same by whole arrays, and takes the place of plain Python on lists; without records.
     """
     with np.errstate(all="ignore"):
-        if paying_steps(loop, steps):
-            converted = tuple(as_record(part) for part in records)
-            arguments = (*converted, *(as_structure(part) for part in series), *(as_structure(part) for part in rows))
-            machine_code = compiled(loop, arguments) if is_worthwhile(loop, steps, types_of(arguments)) else None
-            if machine_code is not None:
-                return machine_code(*arguments), (*converted, *series), COMPILED
+        ready = code_for(loop, records, steps, (*series, *rows))
+        if ready is not None:
+            machine_code, arguments = ready
+            return machine_code(*arguments), (*arguments[: len(records)], *series), COMPILED
         if in_arrays is not None:
             return in_arrays(*series, *rows), series, PLAIN
         left = tuple(as_lists(part) for part in (*records, *series))
         return loop(*left, *rows), left, PLAIN
 
 
-def called_often(function: Loop, records: Parts, steps: int) -> tuple[Loop, Parts] | None:
-    """Return the compiled code of a function that a loop in plain Python calls at every step, and records for it.
+def code_for(function: Loop, records: Parts, steps: int, structures: Parts = ()) -> tuple[Loop, Parts] | None:
+    """Return the compiled code of a loop, or of a function that one in plain Python calls at every step; its arguments.
 
     None where it is not worthwhile, or cannot be made.
 
     Parameters
     ----------
     function
-        The plain function, of named tuples.
-    records
-        Such ones.
+        The plain function.
+    records, structures
+        What it takes: named tuples of arrays of always the same sizes, and what follows them.
     steps
-        Steps of one block that take as long.
+        How many steps it makes, or steps of one block that take as long.
     """
     if not paying_steps(function, steps):
         return None
-    converted = tuple(as_record(part) for part in records)
-    machine_code = compiled(function, converted) if is_worthwhile(function, steps, types_of(converted)) else None
-    return None if machine_code is None else (machine_code, converted)
+    arguments = (*(as_record(part) for part in records), *(as_structure(part) for part in structures))
+    machine_code = compiled(function, arguments) if is_worthwhile(function, steps, types_of(arguments)) else None
+    return None if machine_code is None else (machine_code, arguments)
 
 
 def types_of(arguments: Parts) -> Parts:

@@ -49,10 +49,10 @@ def test_a_body_is_the_same_compiled_and_plain(name, always, monkeypatch):
 
 
 def test_contacts_of_sub_blocks_are_found_from_records(monkeypatch, held):
-    def called_often(function, records, steps):
+    def code_for(function, records, steps):
         return function, tuple(compiled.as_record(part) for part in records)
 
-    monkeypatch.setattr(glued_step, "called_often", called_often)
+    monkeypatch.setattr(glued_step, "code_for", code_for)
     held("rough sub-blocks", CASES["rough sub-blocks"](0).run())
 
 
