@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dda.bodies.gap_form import GapForm
 from dda.bodies.two_block import TwoBlockModel
 from dda.linear.answers import Mode, modes
 from dda.model.arrays import Array
@@ -26,20 +25,13 @@ class Diagnostics:
     largest_omega: float  # largest w dt over the reached modes [-]
 
 
-def _scaled(form: GapForm, scheme: Scheme) -> tuple[Array, Array, Array]:
-    """Return M, dt^2 K (diagonal) and dt^2 F in unknowns scaled for a diagonal of S near one."""
-    k = scheme.step**2 * form.K
-    F = scheme.step**2 * form.F
-    diagonal = step_matrices(scheme, np.diag(form.M), k)[-1]
-    scale = np.ldexp(1.0, -(np.frexp(diagonal)[1] // 2))
-    return scale[:, None] * form.M * scale, scale * k * scale, scale * F
-
-
 def diagnostics(model: TwoBlockModel, scheme: Scheme) -> Diagnostics:
     """Return conditioning, residual and spectral radius of the assembled step."""
     form = model.reached
-    M, k, F = _scaled(form, scheme)
-    S = step_matrices(scheme, M, np.diag(k))[-1]
+    S = step_matrices(scheme, form.M, np.diag(scheme.step**2 * form.K))[-1]
+    scale = np.ldexp(1.0, -(np.frexp(np.diag(S))[1] // 2))  # powers of two, which bring the diagonal near one
+    S = scale[:, None] * S * scale
+    F = scale * (scheme.step**2 * form.F)
     x = np.linalg.solve(S, F)
     residual = np.abs(S @ x - F) / (np.abs(S) @ np.abs(x) + np.abs(F))
     unscaled = step_matrices(scheme, model.mass, scheme.step**2 * model.stiffness)[-1]
