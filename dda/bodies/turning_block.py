@@ -242,7 +242,7 @@ def observed(body: Body, states: RollingMotion, history: History) -> Columns:
 
 
 def energies(model: RollingModel, rotation: str, laws: Laws, states: RollingMotion, history: History) -> Columns:
-    """Return the energies [J] after every step, the losses summed from t = 0 on.
+    """Return the energies [J] from t = 0 on, the losses summed.
 
     They are those of `dda.march.energy`, but for the algorithmic loss, which is what the others leave of the total:
     at delta = 1 and alpha >= 1/2 none of them is negative, however far the block turns.

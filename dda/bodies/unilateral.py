@@ -231,7 +231,7 @@ def energies(
     history: History,
     rule: str,
 ) -> Columns:
-    """Return the energies [J] after every step, the losses summed from t = 0 on.
+    """Return the energies [J] from t = 0 on, the losses summed.
 
     They are those of `dda.march.energy`, with "dashpot" or "impact" where contact has one. Energy-conserving contact
     does the work U0 - U1 itself and loses nothing.
@@ -254,9 +254,9 @@ def energies(
     )
     energies = energies_of(stored, history.sums, scheme.table is not None)
     if model.contact.damping:
-        energies[DASHPOT] = history.sums[1:, CONTACT]
+        energies[DASHPOT] = history.sums[:, CONTACT]
     if rule == IMPACT:
-        energies[IMPACT_LOSS] = history.sums[1:, CONTACT]
+        energies[IMPACT_LOSS] = history.sums[:, CONTACT]
     return energies
 
 

@@ -44,7 +44,7 @@ def bulk_loss(alpha: float, delta: float, h2: float, stiff: float, kinetic: floa
 
 
 def energies_of(stored: Sequence[Array], sums: Array, by_balance: bool) -> Columns:
-    """Return the energies by `ENERGIES` [J] after every step, losses summed from t = 0 on.
+    """Return the energies by `ENERGIES` [J] from t = 0 on, (steps + 1,) each, losses summed.
 
     Parameters
     ----------
@@ -63,4 +63,4 @@ def energies_of(stored: Sequence[Array], sums: Array, by_balance: bool) -> Colum
         parts["algorithmic"] = total[0] - total
         for loss in (DAMPING, SWITCHING, FRICTION, CONTACT):
             parts["algorithmic"] -= sums[:, loss]
-    return {name: part[1:] for name, part in parts.items()}
+    return parts

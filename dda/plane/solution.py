@@ -121,10 +121,9 @@ def solve_plane(
     for i, part in enumerate(model.blocks):
         if part.motion is not None:
             velocity[:, i, :2] = part.motion.velocity(time - scheme.step / 2)
-    columns, stored = contact_columns(model, march, history, kept)
-    parts = kinetic, strain_energy(model, q), stored, load_energy(model, q), history.sums[: reached + 1 : every]
-    repeated = [np.concatenate([part[:1], part]) for part in parts]  # which returns what follows t = 0
-    energy = energies_of(repeated[:4], repeated[4], scheme.table is not None)
+    columns, springs = contact_columns(model, march, history, kept)
+    stored = kinetic, strain_energy(model, q), springs, load_energy(model, q)
+    energy = energies_of(stored, history.sums[: reached + 1 : every].copy(), scheme.table is not None)
     total = np.sum(list(energy.values()), axis=0)
     starts = np.concatenate([[0], 1 + every * np.arange(kept - 1)]).astype(int)
     return PlaneResult(

@@ -27,7 +27,7 @@ class MarchResult(Result):
 
     outcome: str  # "completed", or why the history ends early, in words
     history: History  # from t = 0 on, by the rows of contact
-    balance: Callable[[], Columns] | None  # makes the energies, if they were asked for
+    balance: Callable[[], Columns] | None  # makes the energies from t = 0 on, if they were asked for
 
     @property
     def step_solves(self) -> NDArray[np.int_]:
@@ -41,11 +41,11 @@ class MarchResult(Result):
 
     @cached_property
     def energies(self) -> Columns | None:
-        """By `ENERGIES` [J, of a column J/m^2], losses summed from t = 0 on; None if not asked for."""
+        """By `ENERGIES` [J, of a column J/m^2], (steps,), losses summed from t = 0 on; None if not asked for."""
         if self.balance is None:
             return None
         with np.errstate(all="ignore"):
-            return self.balance()
+            return {name: values[1:] for name, values in self.balance().items()}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
