@@ -11,7 +11,7 @@ from time import perf_counter
 
 import numpy as np
 
-from dda.bodies.gap_form import GapForm, ModalForm, modal_form
+from dda.bodies.gap_form import ModalForm, modal_form
 from dda.bodies.two_block import TwoBlockModel
 from dda.model.arrays import Array
 from dda.model.checks import check_damping, check_share
@@ -74,9 +74,9 @@ def solve(
         stepped = _why_stepped(model, scheme, modal, full, floor)
         ready = perf_counter()
         if floor is not None:
-            adapted = adapted_modes(scheme, modal.frequencies, modal.load, steps, floor)
-            observed = rows @ adapted.modes
-            damping = dict(zip(ADAPTIVE_COLUMNS, (adapted.discount, adapted.loss * size * size), strict=True))
+            adapted, discount, loss = adapted_modes(scheme, modal.frequencies, modal.load, steps, floor)
+            observed = rows @ adapted
+            damping = dict(zip(ADAPTIVE_COLUMNS, (discount, loss * size * size), strict=True))
         elif model.load.ramp:
             shares = np.clip(scheme.instants(steps) / model.load.ramp, 0.0, 1.0)
             observed = rows @ stepped_modes(scheme, modal.frequencies, modal.load, steps, shares)
@@ -91,6 +91,9 @@ def solve(
             bound_overflow(observed, size)
             observed += rows @ histories + own
             size = 1.0
+    notes = [f"stepped: {stepped}" if stepped else "blocked"]
+    if len(form.unknowns) < 6:
+        notes.insert(0, f"{len(form.unknowns)} of 6 unknowns kept: {', '.join(form.unknowns)}")
     result = linear_result(
         scheme,
         (began, ready),
@@ -101,7 +104,7 @@ def solve(
         nonzeros=int(np.count_nonzero(form.M)),
         factorisations=1,
         solves=steps * len(scheme.stages) if stepped else 0,
-        notes=(*_savings(form), f"stepped: {stepped}" if stepped else "blocked"),
+        notes=tuple(notes),
     )
     every = result.columns | damping
     return replace(result, columns={name: every[name] for name in columns})
@@ -136,10 +139,3 @@ def modal_histories(scheme: Scheme, modal: ModalForm, rows: Array, steps: int, b
         return rows @ stepped_modes(scheme, modal.frequencies, modal.load, steps)
     static = modal.load / modal.frequencies / modal.frequencies
     return blocked_modes(scheme, modal.frequencies, rows * static, steps)
-
-
-def _savings(form: GapForm) -> tuple[str, ...]:
-    """Say which unknowns were kept if not all of them."""
-    if len(form.unknowns) == 6:
-        return ()
-    return (f"{len(form.unknowns)} of 6 unknowns kept: {', '.join(form.unknowns)}",)

@@ -39,10 +39,10 @@ class Result:
     stepping_seconds: float  # the steps [s]
 
 
-def check_request(steps: int, columns: Sequence[str], known: Sequence[str] = COLUMNS) -> None:
+def check_request(steps: int, columns: Sequence[str]) -> None:
     """Raise ValueError unless steps is a positive integer and every column is known."""
     check_count(steps=steps)
-    check_columns(known, columns)
+    check_columns(COLUMNS, columns)
 
 
 def linear_result(

@@ -12,7 +12,7 @@ the size of the load, but the motion is no longer linear: loads do not superpose
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -20,22 +20,18 @@ from dda.model.arrays import Array
 from dda.scheme.newmark import Scheme, rest, staged_step, step_matrices
 
 
-@dataclass(frozen=True, eq=False)
-class Adapted:
-    """What self-adaptive damping makes of mass-normalised modes."""
-
-    modes: Array  # (n, steps) D of every mode and step
-    discount: Array  # (steps,) gg that each step starts with [-]
-    loss: Array  # (steps,) kinetic energy taken up to each step [J]
-
-
 def next_discount(before: float, now: float, floor: float) -> float:
     """Return gg from the square roots of the kinetic energies one step before and now."""
     return max(floor, now / before) if now < before else 1.0
 
 
-def adapted_modes(scheme: Scheme, frequencies: Array, load: Array, steps: int, floor: float) -> Adapted:
+def adapted_modes(
+    scheme: Scheme, frequencies: Array, load: Array, steps: int, floor: float
+) -> tuple[Array, Array, Array]:
     """Step all modes together from rest under a constant modal load, by a scheme whose own discount is 1.
+
+    Return D of every mode and step, (n, steps), the gg that each step starts with, and the kinetic energy taken up to
+    its end [J], (steps,).
 
     Parameters
     ----------
@@ -59,4 +55,4 @@ def adapted_modes(scheme: Scheme, frequencies: Array, load: Array, steps: int, f
         modes[:, n] = state[0]
         before = now
         now = math.hypot(*state[1].tolist())
-    return Adapted(modes, discount, np.cumsum(loss))
+    return modes, discount, np.cumsum(loss)
