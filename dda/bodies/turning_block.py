@@ -18,7 +18,6 @@ from dda.bodies.turning_body import (
     Body,
     RollingMotion,
     body,
-    directions,
     motion_of,
     strain_matrices,
     turned,
@@ -32,6 +31,7 @@ from dda.march.run import run
 from dda.march.step import Body as ModalBody
 from dda.march.step import History, course_of, state_of
 from dda.model.arrays import Array, ArrayPair, Columns
+from dda.model.block import displacement_rows
 from dda.model.load import BaseMotion, LoadedBlock, at_once, pressed_part
 from dda.result.contact_result import ContactResult, run_fields
 from dda.result.result import COLUMNS
@@ -110,12 +110,9 @@ class RollingModel(LoadedBlock):
         V[:2] = body.to_base @ self.velocity
         V[2] = self.spin
         push = np.zeros(6)
-        push[:2] = body.M[0, 0] * self.weight
-        spin = np.array([-Q[1], Q[0]])
-        across, up = np.zeros((2, 6))
         for (x, y), force in zip(*self.dead, strict=True):
-            directions(spin, Q, q, x, y, across, up)
-            push += force[0] * across + force[1] * up
+            push += displacement_rows(x, y).T @ (Q.T @ force)  # in axes that turn with the block
+        push[:2] = Q @ push[:2] + body.M[0, 0] * self.weight
         dt = scheme.step
         R = dt * dt * (body.shapes.T @ push)
         a = R.copy() if scheme.start == "consistent" else np.zeros(6)
