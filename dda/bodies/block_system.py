@@ -299,39 +299,33 @@ def _free_block(block: Block) -> tuple[Array, Array, Array]:
 
 def _springs(blocks: Sequence[Block], joints: Sequence[Joint]) -> tuple[csr_array, Array, csr_array, csr_array]:
     """Return B by the unknowns of the blocks, G, kappa and its inverse."""
+    from scipy.sparse import csr_array
+
     groups = gap_groups(blocks, joints)
     firsts = np.cumsum([0, *(len(group.stiffness) for group in groups)])
     G = np.zeros((firsts[-1], 2))
-    pieces = []
+    data = [np.zeros(0)]
+    places = [np.zeros((2, 0), dtype=int)]
     for first, group in zip(firsts.tolist(), groups, strict=False):
         for body, rows in group.bodies.items():
             if body == FIXED:
                 G[first : first + len(rows)] -= rows
             else:
-                pieces.append((first, 6 * body, rows))
-    B = _assembled(pieces, len(G), 6 * len(blocks))
+                place = np.array(np.nonzero(rows))
+                data.append(rows[*place])
+                places.append(np.add(place, [[first], [6 * body]]))
+    B = csr_array((np.concatenate(data), np.concatenate(places, axis=1)), shape=(len(G), 6 * len(blocks)))
     stiffness = [group.stiffness for group in groups]
     return B, G, _block_diagonal(stiffness), _block_diagonal([_inverse(kappa) for kappa in stiffness])
 
 
 def _block_diagonal(blocks: Sequence[Array]) -> csr_array:
-    """Return the matrix with square blocks on its diagonal, without their zeros."""
-    firsts = np.cumsum([0, *(len(block) for block in blocks)]).tolist()
-    pieces = list(zip(firsts, firsts, blocks, strict=False))
-    return _assembled(pieces, firsts[-1], firsts[-1])
+    """Return the matrix with blocks on its diagonal, without their zeros."""
+    from scipy.sparse import block_diag, csr_array
 
-
-def _assembled(pieces: Sequence[tuple[int, int, Array]], rows: int, columns: int) -> csr_array:
-    """Return the sparse matrix of dense pieces, each with its first row and column, without their zeros."""
-    from scipy.sparse import csr_array
-
-    data = [np.zeros(0)]
-    places = [np.zeros((2, 0), dtype=int)]
-    for row, column, piece in pieces:
-        place = np.array(np.nonzero(piece))
-        data.append(piece[*place])
-        places.append(np.add(place, [[row], [column]]))
-    return csr_array((np.concatenate(data), np.concatenate(places, axis=1)), shape=(rows, columns))
+    matrix = csr_array(block_diag([np.zeros((0, 0)), *blocks]))
+    matrix.eliminate_zeros()
+    return matrix
 
 
 def _inverse(matrix: Array) -> Array:
