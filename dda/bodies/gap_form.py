@@ -33,7 +33,6 @@ from dda.model.block import Block
 from dda.model.load import Load, directions_of, pressed_part
 from dda.model.material import Material
 from dda.model.polygon import AreaIntegrals, area_integrals
-from dda.result.result import COLUMNS
 from dda.scheme.harmonic import Complex, answering, staged_amplitude
 from dda.scheme.newmark import Scheme
 
@@ -59,9 +58,8 @@ class GapForm:
     M: Array  # (n, n) inertia
     K: Array  # (n,) diagonal of the stiffness
     F: Array  # (n,) load, the largest of its stresses 1 Pa
-    R: Array  # (n, 2) rigid translation by the base's displacement in x and y
-    Q: Array  # (6, n): D = Q (x + R y)
-    observers: Columns  # column -> (n,) row
+    R: Array  # (n, 2) rigid translation by the base's displacement in x and y; zero where it does not move so
+    observers: Columns  # column -> (n,) row over x, of the unknowns D over x + R y
     corners: Array  # (2, n, 2) displacements along and away from the base, of its corners M and N
 
     def reduced(self) -> GapForm:
@@ -135,7 +133,6 @@ class GapForm:
             self.K[unknowns],
             self.F[unknowns],
             self.R[unknowns],
-            self.Q[:, unknowns],
             {name: row[unknowns] for name, row in self.observers.items()},
             self.corners[:, unknowns],
         )
@@ -158,15 +155,13 @@ def gap_form(block: Block, contact: Contact, base: int, top: int, load: Load) ->
     rho = block.material.density
     along, away = moves
     weight = rho * load.gravity * (axes @ load.falling)
-    Q = _to_block_unknowns(moves, moments[0] / moments[0, 0], axes)
     return GapForm(
         UNKNOWNS,
         rho * (along @ moments @ along.T + away @ moments @ away.T),
         _stiffness(block.material, contact, block.section.area, a),
         _load(local, top, axes, moves, load) + weight @ (moves @ moments[0]) + 0.0,
-        _translation(axes, load),
-        Q,
-        _observers(Q, contact, a),
+        np.eye(6, 2) @ (axes * directions_of(load.motion)),
+        _observers(_to_block_unknowns(moves, moments[0] / moments[0, 0], axes), contact, a),
         moves @ np.array([[1.0, 1.0], [-a / 2, a / 2], [0.0, 0.0]]),
     )
 
@@ -226,13 +221,6 @@ def _edge(ends: Array, extent: Array, traction: Array, moves: Array) -> Array:
     return np.asarray(force @ (moves @ np.array([1.0, *middle])))
 
 
-def _translation(axes: Array, load: Load) -> Array:
-    """Return x of the rigid translation by 1 m in x and in y, zero where the base does not move so."""
-    R = np.zeros((6, 2))
-    R[:2] = axes * directions_of(load.motion)
-    return R
-
-
 def _to_block_unknowns(moves: Array, centroid: Array, axes: Array) -> Array:
     """Return the 6 x 6 matrix Q of D = Q x, D in global directions about the centroid (1, x', y')."""
     slope = moves[:, :, 1:]
@@ -243,6 +231,5 @@ def _to_block_unknowns(moves: Array, centroid: Array, axes: Array) -> Array:
 
 def _observers(Q: Array, contact: Contact, a: float) -> Columns:
     """Return the row of every column: the block's unknowns and -2 pn w / a."""
-    rows = dict(zip(D_COLUMNS, Q, strict=True))
-    rows["contact_pressure"] = np.array([0.0, -2 * contact.normal / a, 0.0, 0.0, 0.0, 0.0])
-    return {name: rows[name] for name in COLUMNS}
+    pressure = np.array([0.0, -2 * contact.normal / a, 0.0, 0.0, 0.0, 0.0])
+    return dict(zip((*D_COLUMNS, "contact_pressure"), (*Q, pressure), strict=True))
