@@ -61,11 +61,11 @@ class TwoBlockModel(LoadedBlock):
         pressed = pressed_part(*self.block.edge(self.top), self.load.eccentricity)
         weight = np.zeros(6)
         weight[:2] = self.block.total_mass * self.load.gravity * np.array(self.load.falling)
-        traction = self.block.edge_load(self.top, (self.load.traction, 0.0))
+        traction = self.block.segment_load(*self.block.edge(self.top), (self.load.traction, 0.0))
         return self.block.segment_load(*pressed, (0.0, -self.load.pressure)) + traction + weight
 
     @cached_property
-    def gap_form(self) -> GapForm:
+    def equations(self) -> GapForm:
         """The same model in contact-gap coordinates, all six unknowns, under the load over `load_size`.
 
         Without a load it is the form under a pressure of 1 Pa.
@@ -80,12 +80,7 @@ class TwoBlockModel(LoadedBlock):
             unit = replace(load, pressure=1.0, traction=0.0, gravity=0.0)
         return gap_form(self.block, self.contact, self.base, self.top, unit)
 
-    @property
-    def equations(self) -> GapForm:
-        """The equations in all six unknowns."""
-        return self.gap_form
-
     @cached_property
     def reached(self) -> GapForm:
         """The equations without the unknowns that the load cannot reach."""
-        return self.gap_form.reduced()
+        return self.equations.reduced()

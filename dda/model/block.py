@@ -102,12 +102,8 @@ class Block:
         K[3:, 3:] = self.section.area * self.material.elasticity()
         return K
 
-    def edge_load(self, edge: int, traction: tuple[float, float]) -> Array:
-        """Return the 6 loads of a uniform traction (Fx, Fy) [Pa] on an edge, eq. (29)."""
-        return self.segment_load(*self.edge(edge), traction)
-
     def segment_load(self, start: Array, end: Array, traction: tuple[float, float]) -> Array:
-        """Return the 6 loads of a uniform traction (Fx, Fy) [Pa] between two points [m]."""
+        """Return the 6 loads of a uniform traction (Fx, Fy) [Pa] between two points [m], eq. (29)."""
         x, y = start + (end - start) / 2
         force = float(np.hypot(*(end - start))) * np.array(traction)
         load: Array = self.T(float(x), float(y)).T @ force

@@ -23,7 +23,7 @@ def model(ratio=1.0, mu=0.3):
 
 def both(m, scheme, steps):
     """Return the blocked and the stepped columns."""
-    form = m.gap_form.reduced()
+    form = m.reached
     modal = modal_form(form)
     assert blocks.why_stepped(scheme, modal.frequencies) is None
     rows = m.pressure * np.array([form.observers[name] @ modal.shapes for name in COLUMNS])
