@@ -22,7 +22,7 @@ from dda.linear import elimination
 from dda.linear.krylov import amplitudes
 from dda.model.arrays import Array, ArrayPair, Columns, without_rounding
 from dda.model.block import Block, displacement_rows
-from dda.model.load import BaseMotion, directions_of, falling
+from dda.model.load import BaseMotion, directions_of
 from dda.result.result import COLUMNS
 from dda.scheme.harmonic import Complex, answering
 from dda.scheme.newmark import Scheme
@@ -56,10 +56,9 @@ class BlockSystem:
     observed: Point | None = None  # point whose displacement is reported, the mean where blocks meet [m]
     base_length: float = 1.0  # a, over which the supports' normal force is spread [m]
     loads: Sequence[SurfaceLoad] = ()
-    gravity: float = 0.0  # downwards [m/s^2]
+    gravity: Point = (0.0, 0.0)  # acceleration in x and y [m/s^2]
     motion: BaseMotion | None = None  # of all that is fixed
     base_normal: Point = (0.0, 1.0)  # unit normal of the supports, into the blocks
-    slope: float = 0.0  # by which gravity is turned, to g (sin, -cos) [deg]
 
     def __post_init__(self) -> None:
         joined = {b for joint in self.joints for b in (joint.first, joint.second) if b != FIXED}
@@ -83,7 +82,7 @@ class BlockSystem:
     @cached_property
     def load_size(self) -> float:
         """Largest of the constant loads as a stress, 1 Pa where the base alone acts [Pa]."""
-        weight = max(b.material.density * math.sqrt(b.section.area) for b in self.blocks) * abs(self.gravity)
+        weight = max(b.material.density * math.sqrt(b.section.area) for b in self.blocks) * math.hypot(*self.gravity)
         size = max([weight, *(math.hypot(*load.traction) for load in self.loads)])
         return 1.0 if size == 0 and self.motion is not None else size
 
@@ -120,7 +119,7 @@ class BlockSystem:
         """Return surface loads and weights, six for each block."""
         F = np.zeros((len(self.blocks), 6))
         for i, block in enumerate(self.blocks):
-            F[i, :2] = block.material.density * block.section.area * self.gravity * np.array(falling(self.slope))
+            F[i, :2] = block.total_mass * np.array(self.gravity)
         for load in self.loads:
             block = self.blocks[load.block]
             acting = block.segment_load(np.array(load.start), np.array(load.end), load.traction)

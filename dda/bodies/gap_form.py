@@ -154,7 +154,7 @@ def gap_form(block: Block, contact: Contact, base: int, top: int, load: Load) ->
     moves = _moves(block.material.contraction)
     rho = block.material.density
     along, away = moves
-    weight = rho * load.gravity * (axes @ load.falling)
+    weight = rho * (axes @ load.acceleration)
     return GapForm(
         UNKNOWNS,
         rho * (along @ moments @ along.T + away @ moments @ away.T),

@@ -87,9 +87,7 @@ def glued_blocks(
         for block, start, end in outline:
             if (block, start, end) not in held:
                 loads.append(SurfaceLoad(block, start, end, _traction_of(stress, start, end)))
-    size = float(np.hypot(*gravity))
-    slope = float(np.degrees(np.arctan2(gravity[0], -gravity[1]))) if size else 0.0
-    return BlockSystem(list(blocks), joints, loads=loads, gravity=size, slope=slope)
+    return BlockSystem(list(blocks), joints, loads=loads, gravity=gravity)
 
 
 def _traction_of(stress: tuple[float, float, float], start: Point, end: Point) -> tuple[float, float]:

@@ -75,10 +75,9 @@ def subdivided(model: TwoBlockModel, columns: int, rows: int, glue: float, patte
         observed=model.block.section.centroid,
         base_length=a,
         loads=loads,
-        gravity=load.gravity,
+        gravity=load.acceleration,
         motion=load.motion,
         base_normal=(float(normal[0]), float(normal[1])),
-        slope=load.slope,
     )
 
 

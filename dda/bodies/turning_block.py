@@ -78,7 +78,7 @@ class RollingModel(LoadedBlock):
     @property
     def weight(self) -> Array:
         """Acceleration of gravity along and away from the base [m/s^2]."""
-        return np.asarray(self.load.gravity * (self.body.to_base @ self.load.falling))
+        return np.asarray(self.body.to_base @ self.load.acceleration)
 
     @property
     def dead(self) -> ArrayPair:

@@ -60,7 +60,7 @@ class TwoBlockModel(LoadedBlock):
         """Constant load F in D, 6 entries: eq. (29) with (0, -q), the traction and the weight."""
         pressed = pressed_part(*self.block.edge(self.top), self.load.eccentricity)
         weight = np.zeros(6)
-        weight[:2] = self.block.total_mass * self.load.gravity * np.array(self.load.falling)
+        weight[:2] = self.block.total_mass * np.array(self.load.acceleration)
         traction = self.block.segment_load(*self.block.edge(self.top), (self.load.traction, 0.0))
         return self.block.segment_load(*pressed, (0.0, -self.load.pressure)) + traction + weight
 

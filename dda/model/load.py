@@ -80,9 +80,10 @@ class Load:
         check_not_negative(ramp=self.ramp)
 
     @property
-    def falling(self) -> tuple[float, float]:
-        """Direction of gravity, (sin b, -cos b) for the slope b."""
-        return falling(self.slope)
+    def acceleration(self) -> tuple[float, float]:
+        """That of gravity, g (sin b, -cos b) for the slope b [m/s^2]."""
+        angle = math.radians(self.slope)
+        return self.gravity * math.sin(angle), -self.gravity * math.cos(angle)
 
     def size(self, weight: float) -> float:
         """Return the largest of the constant loads as a stress [Pa]; `weight` is that of gravity, rho h."""
@@ -93,12 +94,6 @@ def at_once(load: Load, what: str) -> None:
     """Raise ValueError for a ramp where something knows loads only that act at once."""
     if load.ramp:
         raise ValueError(f"ramp: does not go with {what}, got {load.ramp!r}")
-
-
-def falling(slope: float) -> tuple[float, float]:
-    """Return the direction of gravity on a slope [deg]."""
-    angle = math.radians(slope)
-    return math.sin(angle), -math.cos(angle)
 
 
 def pressed_part(start: Array, end: Array, eccentricity: float) -> ArrayPair:

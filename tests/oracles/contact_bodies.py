@@ -109,9 +109,8 @@ def pressed_edge(model):
 def resultant(model):
     """Return the loads in x and y of the block's own coordinates [N]."""
     length, pressed = pressed_edge(model)
-    weight = model.block.material.density * model.block.section.area * model.load.gravity
-    right, up = model.load.falling
-    return np.array([model.load.traction * length + weight * right, -model.load.pressure * pressed + weight * up])
+    weight = model.block.total_mass * np.array(model.load.acceleration)
+    return np.array([model.load.traction * length, -model.load.pressure * pressed]) + weight
 
 
 def mirrored_load(model):
