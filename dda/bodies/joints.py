@@ -19,7 +19,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -161,29 +161,20 @@ def _gradient(body: int, along: Array) -> Array:
     return rows
 
 
-def common_part(
-    edge: Sequence[Sequence[float]], other: Sequence[Sequence[float]], slack: float
-) -> tuple[Point, Point] | None:
+def common_part(edge: Sequence[Any], other: Sequence[Any], slack: float) -> tuple[Point, Point] | None:
     """Return the ends of what an edge shares with another one on its line, in its own direction.
 
     The other one may lie beside the line by `slack`; what is shorter is none [m].
     """
-    (x, y), (end_x, end_y) = edge
-    along_x = end_x - x
-    along_y = end_y - y
-    length = math.hypot(along_x, along_y)
-    shares = []
-    for other_x, other_y in other:
-        away_x = other_x - x
-        away_y = other_y - y
-        if abs(along_x * away_y - along_y * away_x) / length > slack:
-            return None
-        share = (along_x * away_x + along_y * away_y) / length**2
-        shares.append(min(max(share, 0.0), 1.0))
-    low, high = sorted(shares)
-    if not (high - low) * length > slack:
+    start, end = (complex(*place) for place in edge)  # in the plane of complex numbers
+    side = end - start
+    along = [(complex(*place) - start) / side for place in other]  # of the edge from 0 to 1
+    places = sorted((share.real, *place) for share, place in zip(along, other, strict=True))
+    low = max(places[0], (0.0, *edge[0]))
+    high = min(places[1], (1.0, *edge[1]))
+    if max(abs(share.imag) for share in along) * abs(side) > slack or not (high[0] - low[0]) * abs(side) > slack:
         return None
-    return (x + low * along_x, y + low * along_y), (x + high * along_x, y + high * along_y)
+    return low[1:], high[1:]
 
 
 def shared_edges(blocks: Sequence[Block], normal: float, shear: float) -> list[Joint]:
@@ -194,7 +185,8 @@ def shared_edges(blocks: Sequence[Block], normal: float, shear: float) -> list[J
     normal, shear : float
         Stiffness of the springs at each end [N/m].
     """
-    edges = [(i, block.edge(e)) for i, block in enumerate(blocks) for e in range(len(block.corners))]
+    outlines = [block.corners.tolist() for block in blocks]
+    edges = [(i, edge) for i, ring in enumerate(outlines) for edge in zip(ring, ring[1:] + ring[:1], strict=True)]
     owners = np.array([owner for owner, _ in edges])
     ends = np.array([edge for _, edge in edges])
     extent = np.ptp(ends.reshape(-1, 2), axis=0)
@@ -206,14 +198,12 @@ def shared_edges(blocks: Sequence[Block], normal: float, shear: float) -> list[J
     begins = lows[order, sweep]
     longest = float(np.max(highs[:, sweep] - lows[:, sweep]))
     joints = []
-    for (i, (a, b)), low, high in zip(edges, lows, highs, strict=True):
-        n = np.array([a[1] - b[1], b[0] - a[0]]) / np.hypot(*(b - a))
+    for (i, edge), low, high in zip(edges, lows, highs, strict=True):
         window = order[slice(*np.searchsorted(begins, (low[sweep] - longest, high[sweep])))]
         window = np.sort(window[owners[window] > i])
         beside = np.all((lows[window] <= high) & (highs[window] >= low), axis=1)
-        near = beside & np.all(np.abs((ends[window] - a) @ n) <= slack, axis=1)
-        for k in window[near]:
-            part = common_part((a.tolist(), b.tolist()), ends[k].tolist(), slack)
+        for k in window[beside]:
+            part = common_part(edge, edges[k][1], slack)
             if part is not None:
                 joints.append(Joint(i, int(owners[k]), *part, normal, shear))
     return joints
