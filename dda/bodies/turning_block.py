@@ -32,6 +32,7 @@ from dda.march.step import Body as ModalBody
 from dda.march.step import History, course_of, state_of
 from dda.model.arrays import Array, ArrayPair, Columns
 from dda.model.block import displacement_rows
+from dda.model.checks import check_finite
 from dda.model.load import BaseMotion, LoadedBlock, at_once, pressed_part
 from dda.result.contact_result import ContactResult, run_fields
 from dda.result.result import COLUMNS
@@ -61,9 +62,7 @@ class RollingModel(LoadedBlock):
         """Check the numbers and the edges."""
         super().check()
         at_once(self.load, "updated geometry")
-        for name in ("tilt", "spin", "velocity"):
-            if not np.all(np.isfinite(getattr(self, name))):
-                raise ValueError(f"{name}: must be finite, got {getattr(self, name)!r}")
+        check_finite(tilt=self.tilt, spin=self.spin, velocity=self.velocity)
         if any(self.contact.band):
             raise ValueError(f"band: must be zero where the geometry is updated, got {self.contact.band!r}")
         if self.contact.damping:

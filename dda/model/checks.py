@@ -6,6 +6,9 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 
 def _check(rule: str, holds: Callable[[Any], bool], values: Mapping[str, Any]) -> None:
     for field, value in values.items():
@@ -13,9 +16,9 @@ def _check(rule: str, holds: Callable[[Any], bool], values: Mapping[str, Any]) -
             raise ValueError(f"{field}: must be {rule}, got {value!r}")
 
 
-def check_finite(**values: float) -> None:
-    """Raise ValueError for infinity and NaN."""
-    _check("finite", math.isfinite, values)
+def check_finite(**values: ArrayLike) -> None:
+    """Raise ValueError for infinity and NaN, also in vectors."""
+    _check("finite", lambda value: bool(np.isfinite(value).all()), values)
 
 
 def check_positive(**values: float) -> None:
