@@ -24,16 +24,14 @@ class Elimination:
     A chain of blocks is a narrow band: its elimination costs little, and keeps the digits of a wave that has decayed.
     """
 
-    def __init__(self, K: csr_array, M: csr_array, C: csr_array | None = None) -> None:
+    def __init__(self, K: csr_array, M: csr_array, C: csr_array) -> None:
         from scipy.sparse.csgraph import reverse_cuthill_mckee
 
-        pattern = abs(K) + abs(M)
-        if C is not None:
-            pattern = pattern + abs(C)
+        pattern = abs(K) + abs(M) + abs(C)
         self.order = reverse_cuthill_mckee((pattern + pattern.T).tocsr(), symmetric_mode=True)
         self.K = K[self.order][:, self.order]
         self.M = M[self.order][:, self.order]
-        self.C = 0 * self.M if C is None else C[self.order][:, self.order]
+        self.C = C[self.order][:, self.order]
         places = pattern[self.order][:, self.order].tocoo()
         self.width = int(np.max(np.abs(places.row - places.col), initial=0))
 

@@ -103,8 +103,8 @@ def amplitudes(equations: Any, rows: ArrayPair, F: Array, g: Array, W2: Complex)
 
     observed = np.zeros((len(rows[0]), len(W2)), complex)
     resolved = np.zeros(len(W2), bool)
-    inertia = np.repeat([1 / equations.scale, 0.0], [len(F), len(g)])
-    elimination = Elimination(equations.saddle, diags_array(inertia, format="csr"))
+    inertia = diags_array(np.repeat([1 / equations.scale, 0.0], [len(F), len(g)]), format="csr")
+    elimination = Elimination(equations.saddle, inertia, 0 * inertia)
     if not elimination.narrow:
         observed, resolved = _Space(equations, rows, equations.at_rest(F, g)).grown(W2)
     right = np.concatenate([F / equations.scale, g])
