@@ -80,9 +80,7 @@ def times_of(scheme: Scheme, steps: int, began: float, ready: float) -> dict[str
 
 def step_times(scheme: Scheme, steps: int) -> Array:
     """Return the times of step 1 to the last [s]."""
-    times = np.arange(1.0, steps + 1)
-    times *= scheme.step
-    return times
+    return scheme.step * np.arange(1.0, steps + 1)
 
 
 def bound_overflow(observed: Array, pressure: float) -> tuple[str, ...]:
@@ -98,5 +96,4 @@ def bound_overflow(observed: Array, pressure: float) -> tuple[str, ...]:
         return ()
     still_finite = np.logical_and.accumulate(finite, axis=1)
     observed[~still_finite] = np.inf
-    broken = np.flatnonzero(~np.all(still_finite, axis=0))
-    return (f"overflow at step {broken[0] + 1}",) if broken.size else ()
+    return (f"overflow at step {np.min(np.sum(still_finite, axis=1)) + 1}",)
