@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
@@ -24,11 +25,7 @@ class TwoBlockModel(LoadedBlock):
     """
 
     contact: Contact
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Names of all columns."""
-        return COLUMNS
+    names: ClassVar[tuple[str, ...]] = COLUMNS  # of all columns
 
     @property
     def motion(self) -> BaseMotion | None:

@@ -67,7 +67,13 @@ class Unilateral:
             raise ValueError(f"band: a rigid stop must open at once (band[1] = 0), got {self.band!r}")
         check_not_negative(cohesion=self.cohesion, damping=self.damping)
         if self.damping:
-            self._check_dashpot()
+            if math.isinf(self.stiffness):
+                raise ValueError("damping: a dashpot needs a finite stiffness beside it, got stiffness = inf")
+            if self.friction is not None or self.cohesion or self.rules != CONSISTENT:
+                friction = f"friction = {self.friction!r}, cohesion = {self.cohesion!r}, rules = {self.rules!r}"
+                raise ValueError(f"damping: a dashpot goes with frictionless contact only, got {friction}")
+            if any(self.band):
+                raise ValueError(f"damping: a dashpot goes with no dead band, got band = {self.band!r}")
         check_among((CONSISTENT, LAGGED), rules=self.rules)
         if self.friction is None:
             if self.cohesion or self.rules == LAGGED:
@@ -79,16 +85,6 @@ class Unilateral:
             raise ValueError("shear: must be positive with friction, got 0")
         if self.band[1] > 0 and self.rules == CONSISTENT:
             raise ValueError(f"band: a corner that pulls rubs under {LAGGED} rules only, got {self.band!r}")
-
-    def _check_dashpot(self) -> None:
-        """Check what a dashpot goes with."""
-        if math.isinf(self.stiffness):
-            raise ValueError("damping: a dashpot needs a finite stiffness beside it, got stiffness = inf")
-        if self.friction is not None or self.cohesion or self.rules != CONSISTENT:
-            friction = f"friction = {self.friction!r}, cohesion = {self.cohesion!r}, rules = {self.rules!r}"
-            raise ValueError(f"damping: a dashpot goes with frictionless contact only, got {friction}")
-        if any(self.band):
-            raise ValueError(f"damping: a dashpot goes with no dead band, got band = {self.band!r}")
 
     @property
     def compliance(self) -> float:

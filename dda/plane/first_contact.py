@@ -19,6 +19,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Sequence
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -139,11 +140,8 @@ def overlap(A: Points, B: Points) -> float:
 
     It is that of the convex parts that lie deepest, through the edge by which they part soonest.
     """
-    depths = []
-    for a in convex_parts(A):
-        for b in convex_parts(B):
-            depths.append(-max(separation(A[a], B[b]), separation(B[b], A[a])))
-    return max(depths)
+    pairs = product([A[ring] for ring in convex_parts(A)], [B[ring] for ring in convex_parts(B)])
+    return max(-max(separation(a, b), separation(b, a)) for a, b in pairs)
 
 
 def separation(ring: Points, points: Points) -> float:

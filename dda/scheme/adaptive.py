@@ -20,11 +20,6 @@ from dda.model.arrays import Array
 from dda.scheme.newmark import Scheme, rest, staged_step, step_matrices
 
 
-def next_discount(before: float, now: float, floor: float) -> float:
-    """Return gg from the square roots of the kinetic energies one step before and now."""
-    return max(floor, now / before) if now < before else 1.0
-
-
 def adapted_modes(
     scheme: Scheme, frequencies: Array, load: Array, steps: int, floor: float
 ) -> tuple[Array, Array, Array]:
@@ -49,7 +44,7 @@ def adapted_modes(
     loss = np.empty(steps)
     before = now = 0.0  # dt sqrt(2 T)
     for n in range(steps):
-        discount[n] = next_discount(before, now, floor)
+        discount[n] = max(floor, now / before) if now < before else 1.0
         loss[n] = (1 - discount[n] ** 2) * (now / dt) ** 2 / 2
         state = staged_step(replace(scheme, gg=float(discount[n])), S, k, [F], [still], state)
         modes[:, n] = state[0]
