@@ -78,7 +78,7 @@ def solve_textbook(
 def inertia(model: TwoBlockModel) -> Array:
     """Return that of (v, ex, ey)."""
     width, height = np.ptp(model.block.corners, axis=0)
-    return np.asarray(model.block.total_mass * np.array([1.0, width**2 / 12, height**2 / 12]))
+    return model.block.total_mass * np.array([1.0, width**2 / 12, height**2 / 12])
 
 
 def recursion_matrix(model: TwoBlockModel, scheme: Scheme) -> Array:
@@ -89,7 +89,7 @@ def recursion_matrix(model: TwoBlockModel, scheme: Scheme) -> Array:
     shear = model.contact.shear * width * width / 2
     K += np.array([[2 * p, 0.0, -p * height], [0.0, shear, 0.0], [-p * height, 0.0, p * height * height / 2]])
     K[1:, 1:] += model.block.section.area * model.block.material.elasticity()[:2, :2]
-    return np.asarray(K)
+    return K
 
 
 def recursion(model: TwoBlockModel, scheme: Scheme, K: Array, steps: int) -> Array:

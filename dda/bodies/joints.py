@@ -66,8 +66,7 @@ class Joint:
     def stiffness(self) -> Array:
         """Matrix of the spring at one end, 2 x 2 in global directions [N/m]."""
         t, n = self.frame
-        k: Array = self.normal * np.outer(n, n) + self.shear * np.outer(t, t)
-        return k
+        return self.normal * np.outer(n, n) + self.shear * np.outer(t, t)
 
 
 class Gaps(NamedTuple):

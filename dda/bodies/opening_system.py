@@ -82,10 +82,10 @@ class OpeningSystem:
 
         def slide() -> Array:
             base = 0.0 if self.motion is None else self.motion.at(step_times(scheme, reached)) @ self.axes[0]
-            return np.asarray(slides[:, 1:] - base)
+            return slides[:, 1:] - base
 
         def balance() -> Columns:
-            springs = (history.force * history.force) @ np.asarray(laws.compliance) / 2
+            springs = (history.force * history.force) @ laws.compliance / 2
             return energies_of((*stored, springs, 0.0 - done[0]), history.sums, scheme.table is not None)
 
         how = COMPILED if glue.compiled else PLAIN

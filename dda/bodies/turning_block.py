@@ -77,7 +77,7 @@ class RollingModel(LoadedBlock):
     @property
     def weight(self) -> Array:
         """Acceleration of gravity along and away from the base [m/s^2]."""
-        return np.asarray(self.body.to_base @ self.load.acceleration)
+        return self.body.to_base @ self.load.acceleration
 
     @property
     def dead(self) -> ArrayPair:
@@ -201,7 +201,7 @@ class RollingResult(ContactResult):
     @cached_property
     def slipped(self) -> Array:
         """Distance that the shear reference moved by slip in each step, (contacts, steps) [m]."""
-        return np.asarray(np.abs(super().slipped))
+        return np.abs(super().slipped)
 
     @cached_property
     def slip(self) -> Array:

@@ -91,7 +91,7 @@ class _Space:
         amplitudes = rows @ y
         terms = np.abs(rows) @ np.abs(y)
         lost = np.any(np.finfo(float).eps * terms > ROUNDING * np.abs(amplitudes), axis=0)
-        return amplitudes, np.asarray(residual <= small), np.asarray(lost)
+        return amplitudes, residual <= small, lost
 
 
 def amplitudes(equations: Any, rows: ArrayPair, F: Array, g: Array, W2: Complex) -> Complex:

@@ -13,4 +13,4 @@ ROUNDING = 64 * np.finfo(float).eps  # of the terms of a sum: each carries a few
 
 def without_rounding(values: ArrayLike, scale: ArrayLike) -> Array:
     """Return values, exact zeros where they are no more than the rounding of their terms, of the size `scale`."""
-    return np.asarray(np.where(np.abs(values) <= ROUNDING * np.asarray(scale), 0.0, values))
+    return np.where(np.abs(values) <= ROUNDING * np.asarray(scale), 0.0, values)

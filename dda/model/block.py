@@ -53,7 +53,7 @@ class Block:
         """Cross product of every edge and the next one, positive where they turn left [m^2]."""
         edges = np.roll(self.corners, -1, axis=0) - self.corners
         following = np.roll(edges, -1, axis=0)
-        return np.asarray(edges[:, 0] * following[:, 1] - edges[:, 1] * following[:, 0])
+        return edges[:, 0] * following[:, 1] - edges[:, 1] * following[:, 0]
 
     @cached_property
     def section(self) -> Section:
@@ -106,5 +106,4 @@ class Block:
         """Return the 6 loads of a uniform traction (Fx, Fy) [Pa] between two points [m], eq. (29)."""
         x, y = start + (end - start) / 2
         force = float(np.hypot(*(end - start))) * np.array(traction)
-        load: Array = self.T(float(x), float(y)).T @ force
-        return load
+        return self.T(float(x), float(y)).T @ force

@@ -31,12 +31,9 @@ Complex = NDArray[np.complex128]
 
 def squared_frequency(scheme: Scheme, omega: ArrayLike) -> Complex:
     """Return W2 = -A / D at frequencies w of the load [rad/s], stepped [1/s^2]; W2 -> w^2 as dt -> 0 at gg = 1."""
-    stage = one_stage(scheme)
     forward, velocity_difference, moved = _parts(scheme, omega)
     W2 = -(forward / scheme.step) * (velocity_difference / scheme.step) / moved
-    if scheme.averages:
-        W2 = W2 * (1 + (1 - stage.am) * forward) / (1 + (1 - stage.af) * forward)
-    return np.asarray(W2)
+    return W2 / acceleration_share(scheme, omega) if scheme.averages else W2
 
 
 def one_stage(scheme: Scheme) -> Stage:
@@ -50,7 +47,7 @@ def acceleration_share(scheme: Scheme, omega: ArrayLike) -> Complex:
     """Return -A / (W2 D): one, unless the forces are balanced between the ends of a step."""
     stage = one_stage(scheme)
     forward, _, _ = _parts(scheme, omega)
-    return np.asarray((1 + (1 - stage.af) * forward) / (1 + (1 - stage.am) * forward))
+    return (1 + (1 - stage.af) * forward) / (1 + (1 - stage.am) * forward)
 
 
 def staged_amplitude(scheme: Scheme, omega: Array, k: float, load: float, base: float) -> Complex:
@@ -83,8 +80,8 @@ def staged_amplitude(scheme: Scheme, omega: Array, k: float, load: float, base: 
 def _parts(scheme: Scheme, omega: ArrayLike) -> tuple[Complex, Complex, Complex]:
     """Return z - 1 and z - gg, and (z - 1)(z - gg) D / (dt^2 A), which the two lines give."""
     half = np.asarray(omega, float) * (scheme.step / 2)
-    forward: Complex = np.asarray(2j * np.sin(half) * np.exp(1j * half))  # all digits of a slow load
-    velocity_difference: Complex = np.asarray(forward + (1 - scheme.gg))
+    forward: Complex = 2j * np.sin(half) * np.exp(1j * half)  # all digits of a slow load
+    velocity_difference: Complex = forward + (1 - scheme.gg)
     stage = one_stage(scheme)  # where the weights of A add up to one in V, and to half and the lag in D
     mean = 0.5 + scheme.lag + stage.alpha * forward
     moved: Complex = scheme.gg * (1 + stage.delta * forward) + mean * velocity_difference
@@ -100,7 +97,7 @@ def velocity_factor(scheme: Scheme, omega: ArrayLike) -> Complex:
     """Return S = V / D of the stepped system [1/s]; it tends to i w as dt does to zero."""
     forward, _, moved = _parts(scheme, omega)
     stage = one_stage(scheme)
-    return np.asarray(forward * (1 + stage.delta * forward) / (scheme.step * moved))
+    return forward * (1 + stage.delta * forward) / (scheme.step * moved)
 
 
 def chosen(scheme: Scheme, frequencies: ArrayLike, exact: bool) -> tuple[Complex, Complex]:
@@ -115,7 +112,7 @@ def chosen(scheme: Scheme, frequencies: ArrayLike, exact: bool) -> tuple[Complex
     if scheme.gg == 0:
         raise ValueError("gg: must be positive for a damping rate -ln(gg) / dt, got 0")
     rate = -math.log(scheme.gg) / scheme.step
-    return np.asarray(w * w - 1j * rate * w), np.asarray(1j * w, complex)
+    return w * w - 1j * rate * w, np.asarray(1j * w, complex)
 
 
 def answering(scheme: Scheme, frequencies: ArrayLike, exact: bool) -> tuple[Complex, Complex]:
@@ -127,4 +124,4 @@ def answering(scheme: Scheme, frequencies: ArrayLike, exact: bool) -> tuple[Comp
     if not scheme.damped:
         return W2, np.ones_like(W2)
     stiffer = 1 + scheme.stiffness_damping * S
-    return np.asarray((W2 - scheme.mass_damping * S) / stiffer), np.asarray(1 / stiffer)
+    return (W2 - scheme.mass_damping * S) / stiffer, 1 / stiffer
