@@ -342,12 +342,12 @@ def _without_rounding(M: Array) -> Array:
 
 def _levers(block: Block) -> Array:
     """Return the size of the displacement of a block's points by its unknowns, by which a symmetric place has zeros."""
-    return np.array([1.0, 1.0, *[float(np.max(np.ptp(block.corners, axis=0)))] * 4])
+    return np.array([1.0, 1.0, *[np.max(np.ptp(block.corners, axis=0))] * 4])
 
 
 def _holds(corners: Array, point: Array) -> bool:
     """Tell whether a polygon holds a point, its boundary included."""
-    slack = 1e-9 * float(np.max(np.ptp(corners, axis=0)))
+    slack = 1e-9 * np.max(np.ptp(corners, axis=0))
     start = (corners - point) @ np.array([1, 1j])  # in the plane of complex numbers
     end = np.roll(start, -1)
     side = end - start

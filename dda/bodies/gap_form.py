@@ -217,7 +217,7 @@ def _load(local: Array, top: int, axes: Array, moves: Array, load: Load) -> Arra
 def _edge(ends: Array, extent: Array, traction: Array, moves: Array) -> Array:
     """Return the load of a uniform traction (local directions) on a straight part of the outline."""
     middle = without_rounding((ends[0] + ends[1]) / 2, extent)
-    force = float(np.hypot(*(ends[1] - ends[0]))) * traction
+    force = np.hypot(*(ends[1] - ends[0])) * traction
     return np.asarray(force @ (moves @ np.array([1.0, *middle])))
 
 

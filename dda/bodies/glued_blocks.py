@@ -105,7 +105,7 @@ def _outline(blocks: Sequence[Block], joints: Sequence[Joint]) -> Iterator[Piece
     for joint in joints:
         for body in (joint.first, joint.second):
             joined.setdefault(body, []).append((joint.start, joint.end))
-    slack = SAME_LINE * float(np.max(np.ptp(np.vstack([block.corners for block in blocks]), axis=0)))
+    slack = SAME_LINE * np.max(np.ptp(np.vstack([block.corners for block in blocks]), axis=0))
     for number, block in enumerate(blocks):
         for index in range(len(block.corners)):
             start, end = (tuple(corner.tolist()) for corner in block.edge(index))
@@ -148,8 +148,7 @@ class GluedBlocks:
         z, force = equations.at_rest(equations.F, np.zeros(len(equations.pressure)))
         if not self.held:
             inertia = equations.B.T[:, -3:] @ force[-3:]
-            size = float(np.sum(np.abs(equations.F)))
-            if float(np.max(np.abs(inertia))) > UNBALANCED * size:
+            if np.max(np.abs(inertia)) > UNBALANCED * np.sum(np.abs(equations.F)):
                 raise ValueError("load: must be in balance where nothing is clamped, got a resultant")
         return np.asarray(equations.shapes @ (z * self.system.load_size)).reshape(-1, 6)
 
@@ -169,9 +168,9 @@ class GluedBlocks:
         blocks = self.system.blocks
         rows = np.zeros((2, len(blocks), 6))
         between = [joint for joint in self.system.joints if FIXED not in (joint.first, joint.second)]
-        length = float(np.hypot(*np.subtract(end, start)))
+        length = math.dist(start, end)
         for number, first, last in _on_line([*_outline(blocks, between)], start, end, "edge"):
-            share = float(np.hypot(*np.subtract(last, first))) / length
+            share = math.dist(first, last) / length
             rows[:, number] += share * blocks[number].T(*(np.add(first, last) / 2))
         return rows.reshape(2, -1)
 

@@ -122,7 +122,7 @@ class StageSolver:
         matrix = joint_flexibility(self.weight, glue.C, self.B, self.inverse)
         self.nonzeros = int(matrix.nnz)
         self.solve = factor(matrix) if len(self.still) else np.copy
-        self.corrections = sum(float(np.max(self.s)) > limit for limit in _STIFF)
+        self.corrections = sum(np.max(self.s) > limit for limit in _STIFF)
         if len(glue.contact):
             push = self.weight * glue.scheme.step**2 * glue.contact
             responses = [self.increments(row, self.still) for row in push]

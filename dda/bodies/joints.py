@@ -93,7 +93,7 @@ def _springs_at_points(joints: Sequence[Joint]) -> list[list[End]]:
     points = np.array([place for joint in joints for place in (joint.start, joint.end)]).reshape(-1, 2)
     if not len(points):
         return []
-    slack = _SAME_PLACE * float(np.max(np.ptp(points, axis=0)))
+    slack = _SAME_PLACE * np.max(np.ptp(points, axis=0))
     places = np.zeros(points.shape, dtype=int)
     for axis, x in enumerate(points.T):
         order = np.argsort(x)
@@ -189,13 +189,13 @@ def shared_edges(blocks: Sequence[Block], normal: float, shear: float) -> list[J
     owners = np.array([owner for owner, _ in edges])
     ends = np.array([edge for _, edge in edges])
     extent = np.ptp(ends.reshape(-1, 2), axis=0)
-    slack = _SAME_PLACE * float(np.max(extent))
+    slack = _SAME_PLACE * np.max(extent)
     lows = ends.min(axis=1) - slack
     highs = ends.max(axis=1) + slack
-    sweep = int(np.argmax(extent))  # along the longer side: only edges beside one another there can share anything
+    sweep = np.argmax(extent)  # along the longer side: only edges beside one another there can share anything
     order = np.argsort(lows[:, sweep], kind="stable")
     begins = lows[order, sweep]
-    longest = float(np.max(highs[:, sweep] - lows[:, sweep]))
+    longest = np.max(highs[:, sweep] - lows[:, sweep])
     joints = []
     for (i, edge), low, high in zip(edges, lows, highs, strict=True):
         window = order[slice(*np.searchsorted(begins, (low[sweep] - longest, high[sweep])))]

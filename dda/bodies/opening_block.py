@@ -58,7 +58,7 @@ def opening_block(model: LoadedBlock, velocity: float = 0.0, full: bool = False)
     if load.motion is not None:
         pushed = np.abs(pushed) + np.sum(np.abs(form.M @ form.R), axis=1)
     moving = form.reached_from(pushed != 0)
-    both = full or bool(np.any(moving[[U, S, GXY]]))
+    both = full or np.any(moving[[U, S, GXY]])
     symmetric = SYMMETRIC if moving[EX] else SYMMETRIC[1:]
     kept = np.arange(6) if both else np.array(symmetric)
     form = form.restricted(kept)
@@ -128,6 +128,6 @@ def observed(block: OpeningBlock, row: Array, history: History, motion: BaseMoti
     total = history.motion[:, : len(block.shapes)] @ (row @ block.shapes) + history.opening @ read
     total += history.path @ read[c:]
     if motion is not None and "U" in block.form.unknowns and len(block.B) == c:  # which no row of contact measures
-        moved = motion.along(block.axes).at(step * np.arange(float(len(total))))
+        moved = motion.along(block.axes).at(step * np.arange(len(total)))
         total -= row[block.form.unknowns.index("U")] * moved[:, 0]
     return total

@@ -241,7 +241,7 @@ def energies(
     v = history.motion[:, n : 2 * n] / scheme.step
     load = block.start @ block.form.F - observed(block, block.form.F, history, model.load.motion, scheme.step)
     if model.load.motion is not None:
-        moved = model.load.motion.at(scheme.step * np.arange(float(len(z))))
+        moved = model.load.motion.at(scheme.step * np.arange(len(z)))
         load -= moved @ (block.axes.T @ block.translation.T @ block.form.F)
     springs = history.force
     if model.contact.damping:

@@ -57,7 +57,7 @@ def spring_vectors(block: Block, base: int) -> ArrayPair:
         Rows for the edge's first end M and second end N; a row times D is the spring's stretch [m].
     """
     tangent, normal = base_axes(block, base)
-    T = [block.T(float(x), float(y)) for x, y in block.edge(base)]
+    T = [block.T(*end) for end in block.edge(base)]
     return np.array([normal @ t for t in T]), np.array([tangent @ t for t in T])
 
 

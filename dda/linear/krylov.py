@@ -38,7 +38,7 @@ class _Space:
         self.modes = len(equations.k)
         self.still = 0 * static[1]
         first = self.observed(*static)
-        self.size = float(np.linalg.norm(static[0]))
+        self.size = np.linalg.norm(static[0])
         self.vectors = np.empty((min(LARGEST, self.modes) + 1, len(first)))
         self.vectors[0] = first / self.size if self.size > 0 else 0.0
         self.diagonal: list[float] = []
@@ -59,7 +59,7 @@ class _Space:
         for _ in range(2):  # twice is enough
             part = earlier[:, :n] @ vector[:n]
             vector = vector - part @ earlier
-            inside += float(part[j])
+            inside += part[j]
         size = float(np.linalg.norm(vector[:n]))
         self.diagonal.append(inside)
         self.beside.append(size)

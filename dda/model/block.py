@@ -106,4 +106,4 @@ class Block:
         """Return the 6 loads of a uniform traction (Fx, Fy) [Pa] between two points [m], eq. (29)."""
         x, y = start + (end - start) / 2
         force = float(np.hypot(*(end - start))) * np.array(traction)
-        return self.T(float(x), float(y)).T @ force
+        return self.T(x, y).T @ force

@@ -104,7 +104,7 @@ def pressed_part(start: Array, end: Array, eccentricity: float) -> ArrayPair:
     edge.
     """
     side = end - start
-    length = float(np.hypot(*side))
+    length = np.hypot(*side)
     if eccentricity == 0:
         return start, end
     if not 2 * abs(eccentricity) < length:

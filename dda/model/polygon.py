@@ -117,7 +117,7 @@ def _touches_itself(points: Array) -> bool:
     # each edge has the ends of the other one on both sides of its line, or on it; of edges on one line boxes decide
     across = (_orientation(a, b, c) * _orientation(a, b, d) <= 0) & (_orientation(c, d, a) * _orientation(c, d, b) <= 0)
     beside = np.all((np.minimum(a, b) <= np.maximum(c, d)) & (np.minimum(c, d) <= np.maximum(a, b)), axis=1)
-    if bool(np.any(apart & across & beside)):
+    if np.any(apart & across & beside):
         return True
     before = np.roll(points, 1, axis=0)
     along = np.sum((points - before) * (following - points), axis=1)

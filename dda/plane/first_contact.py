@@ -112,9 +112,9 @@ def first_contact(
     for motion in motions:
         check_finite(**motion._asdict())
     check_positive(until=until)
-    extents = [max(float(np.ptp(polygon.real)), float(np.ptp(polygon.imag))) for polygon in polygons]
+    extents = [max(np.ptp(polygon.real), np.ptp(polygon.imag)) for polygon in polygons]
     start = [complex(one.x, one.y) + polygon * one.turn(0.0) for polygon, one in zip(polygons, motions, strict=True)]
-    rounding = ROUNDING * float(max(np.max(np.abs(place - start[1][0])) for place in start))
+    rounding = ROUNDING * max(np.max(np.abs(place - start[1][0])) for place in start)
     near = NEAR * min(extents) + rounding
     if overlap(*start) > near:
         raise ValueError("polygons: must not overlap at t = 0")

@@ -163,7 +163,7 @@ class PlaneLoad:
         force = np.array(self.force, dtype=float)
         if self.edge is not None:
             ends = np.array(self.edge, dtype=float)
-            return float(np.hypot(*(ends[1] - ends[0]))) * force, ends.mean(axis=0)
+            return np.hypot(*(ends[1] - ends[0])) * force, ends.mean(axis=0)
         return force, None if self.place is None else np.array(self.place, dtype=float)
 
 

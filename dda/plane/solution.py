@@ -117,7 +117,7 @@ def solve_plane(
     q = motion[:, :, :6]
     centroid = np.array([part.block.section.centroid for part in model.blocks]) + q[:, :, :2]
     velocity, kinetic, momentum = rates_of(march, q, motion[:, :, 6:], centroid)
-    time = scheme.step * every * np.arange(float(kept))
+    time = scheme.step * every * np.arange(kept)
     for i, part in enumerate(model.blocks):
         if part.motion is not None:
             velocity[:, i, :2] = part.motion.velocity(time - scheme.step / 2)
@@ -240,7 +240,7 @@ def ramps_of(model: PlaneModel) -> list[float]:
 def loads_of(model: PlaneModel, blocks: Blocks, columns: int) -> tuple[Array, PointLoads]:
     """Return the loads on centroids by their modes, a row for all that is prescribed, and those at other places."""
     ramps = ramps_of(model)
-    rows = np.zeros((columns, int(blocks.modes.sum())))
+    rows = np.zeros((columns, blocks.modes.sum()))
     for i, part in enumerate(model.blocks):
         if not part.held:
             rows[0, blocks.first[i] :][:2] = blocks.root_mass[i] * np.array(model.gravity)
