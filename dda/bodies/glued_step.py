@@ -221,9 +221,8 @@ def glued_march(
         mass_factor=1 + scheme.delta * drag,
         share=scheme.alpha / beta if beta else 1.0,
     )
-    between = start_state(glue, np.zeros(m), 0 * equations.k, np.zeros(2))
     lists: March = as_lists(march)
-    return lists._replace(between=between, method=glue)
+    return lists._replace(method=glue)
 
 
 def start_state(glue: Glue, opening: Array, velocity: Array, moved: Array) -> GluedState:
@@ -246,14 +245,14 @@ def run_glued(
 ) -> tuple[History, int]:
     """Make the steps from the state of `start_state` on; return them, and how they ended."""
     glue = march.method
-    start, after = (start_state(glue, opening, velocity, moved) for _ in range(2))
+    start, after, between = (start_state(glue, opening, velocity, moved) for _ in range(3))
     m = len(opening)
     kept = len(glue.observed[0])
     if m:
         kept += 2 + 2 * glue.energies
     history = history_of(steps, kept, march.laws.contacts, m, glue.energies)
     with np.errstate(all="ignore"):
-        reached, outcome = make_steps(march, start, after, course, history, steps, cut)
+        reached, outcome = make_steps(march._replace(between=between), start, after, course, history, steps, cut)
     return reached_history(history, reached), outcome
 
 

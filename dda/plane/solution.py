@@ -198,9 +198,6 @@ def plane_march(model: PlaneModel, scheme: Scheme, every: int) -> March:
         ends=poses_of(b),
         D=np.zeros((b, 6)),
         new=np.zeros((b, 6)),
-        loaded=np.zeros(len(k)),
-        last=np.zeros(len(k)),
-        x=np.zeros(len(k)),
         row=np.zeros((3, 6)),
         spin=np.zeros(4),
         ground=np.zeros((m, 2)),
@@ -213,6 +210,7 @@ def plane_march(model: PlaneModel, scheme: Scheme, every: int) -> March:
         strained=int(np.any(k > 0)),
         finds=int(model.found is not None),
         detection=detection,
+        **{name: np.zeros(len(k)) for name in ("loaded", "last", "x")},
     )
     march = march_of(body, laws_of(Unilateral(1.0), dense, 2 * dense, TOGETHER), scheme, np.zeros(2 * dense), plane)
     slips = bool(np.any(np.isfinite(springs.limit)))
@@ -401,9 +399,7 @@ def contact_columns(model: PlaneModel, march: March, history: History, kept: int
     row, place = np.nonzero(np.isin(number, numbers) & (k < present))
     rank = np.searchsorted(numbers, number[row, place])
     since = row * len(k) + place >= begins[rank]
-    row = row[since]
-    place = place[since]
-    rank = rank[since]
+    row, place, rank = (part[since] for part in (row, place, rank))
     order = np.argsort(begins)
     column = np.argsort(order)[rank]
     along = present[row, 0] + place
