@@ -24,12 +24,14 @@ class BaseMotion:
         If the instants do not increase, or a number is not finite, or the lengths differ.
     """
 
-    time: ArrayLike  # (n,) instants [s]
-    displacement: ArrayLike  # (n, 2) displacement of the base in x and y [m]
+    time: Any  # (n,) array_like, kept as an array: instants [s]
+    displacement: Any  # (n, 2) array_like, kept as an array: displacement of the base in x and y [m]
 
     def __post_init__(self) -> None:
-        time = np.asarray(self.time, float)
-        moved = np.asarray(self.displacement, float)
+        time = np.array(self.time, float)
+        moved = np.array(self.displacement, float)
+        object.__setattr__(self, "time", time)
+        object.__setattr__(self, "displacement", moved)
         if time.ndim != 1 or len(time) < 1 or moved.shape != (len(time), 2):
             raise ValueError(f"displacement: must be one (x, y) for each instant, got shape {moved.shape}")
         if not (np.all(np.isfinite(time)) and np.all(np.isfinite(moved))):
@@ -37,25 +39,24 @@ class BaseMotion:
         if not np.all(np.diff(time) > 0):
             raise ValueError("time: must increase from instant to instant, got a repeated or decreasing one")
 
-    def at(self, instants: ArrayLike) -> Array:
-        """Return the displacement at given instants, (len(instants), 2) [m]."""
-        times, record, requested = (np.asarray(part, float) for part in (self.time, self.displacement, instants))
-        return np.column_stack([np.interp(requested, times, column) for column in record.T])
+    def at(self, instants: Any) -> Array:
+        """Return the displacement at given instants, an array_like, (len(instants), 2) [m]."""
+        return np.column_stack([np.interp(instants, self.time, column) for column in self.displacement.T])
 
     def velocity(self, instants: ArrayLike) -> Array:
         """Return the velocity at given instants between those of the record, (len(instants), 2) [m/s]."""
-        slopes = np.diff(np.asarray(self.displacement, float), axis=0) / np.diff(self.time)[:, None]
+        slopes = np.diff(self.displacement, axis=0) / np.diff(self.time)[:, None]
         rest = np.zeros((1, 2))
         return np.concatenate([rest, slopes, rest])[np.searchsorted(self.time, instants)]
 
     def along(self, axes: Array) -> BaseMotion:
         """Return the motion along two axes, the rows of a matrix."""
-        return BaseMotion(self.time, np.asarray(self.displacement, float) @ axes.T)
+        return BaseMotion(self.time, self.displacement @ axes.T)
 
 
 def directions_of(motion: BaseMotion | None) -> Array:
     """Return whether a base moves in x and in y, 1 or 0 each, (2,): in neither without a motion."""
-    moved = np.zeros((1, 2)) if motion is None else np.asarray(motion.displacement, float)
+    moved = np.zeros((1, 2)) if motion is None else motion.displacement
     return np.asarray(np.any(moved != 0, axis=0), float)
 
 

@@ -258,7 +258,7 @@ def course_of(model: PlaneModel) -> Course:
     """Return what is prescribed: no common base, the shares of the loads, the displacements of driven blocks."""
     motions = [part.motion for part in model.blocks if part.motion is not None]
     ramps = ramps_of(model)
-    instants = np.unique(np.concatenate([[0.0], ramps, *(np.asarray(motion.time, float) for motion in motions)]))
+    instants = np.unique(np.concatenate([[0.0], ramps, *(motion.time for motion in motions)]))
     none = np.zeros((len(instants), 2))
     shares = [np.clip(instants / ramp, 0.0, 1.0) if ramp else np.ones(len(instants)) for ramp in ramps]
     value = np.column_stack([none, *shares, *(motion.at(instants) for motion in motions)])
