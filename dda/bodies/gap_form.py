@@ -115,7 +115,7 @@ class GapForm:
         load = modal.shapes.T @ F
         carried = modal.translation @ base
         if len(scheme.stages) > 1 and not exact:
-            omega = 2 * np.pi * np.atleast_1d(np.asarray(frequencies, float))
+            omega = 2 * np.pi * np.atleast_1d(frequencies)
             squares = (scheme.step * modal.frequencies) ** 2
             parts = zip(squares.tolist(), (scheme.step**2 * load).tolist(), carried.tolist(), strict=True)
             x = np.array([staged_amplitude(scheme, omega, *part) for part in parts])

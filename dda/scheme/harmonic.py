@@ -106,7 +106,7 @@ def chosen(scheme: Scheme, frequencies: ArrayLike, exact: bool) -> tuple[Complex
     The limit is w^2 - i c w if kinetic damping keeps its rate c = -ln(gg) / dt, and S = i w. Without a rate, gg = 0, it
     is a ValueError.
     """
-    w = 2 * np.pi * np.atleast_1d(np.asarray(frequencies, float))
+    w = 2 * np.pi * np.atleast_1d(frequencies)
     if not exact:
         return squared_frequency(scheme, w), velocity_factor(scheme, w)
     if scheme.gg == 0:

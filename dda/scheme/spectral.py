@@ -54,7 +54,7 @@ def newmark_quadratic(omega: ArrayLike, alpha: Number, delta: Number, gg: Number
 
 def pair(of: Quadratic) -> tuple[ComplexArray, ComplexArray]:
     """Return both y and both lambda, last axis of length two, by equations of their own: small ones keep digits."""
-    middle = -np.asarray(of.b) / 2
+    middle = -of.b / 2
     center = 1 + middle
     is_fast = np.abs(center) < np.abs(middle)
     discriminant = np.where(is_fast, center * center - of.product, middle * middle - of.c)
@@ -94,8 +94,8 @@ def spectral_radius(omega: ArrayLike, alpha: Number, delta: Number, gg: Number =
 def logarithms(of: Quadratic) -> ComplexArray:
     """Return ln lambda of both eigenvalues, last axis of length two, NaN where one is real and not positive."""
     y, z = pair(of)
-    change = np.asarray(of.change)[..., None]
-    product = np.asarray(of.product)[..., None]
+    change = of.change[..., None]
+    product = of.product[..., None]
     with np.errstate(all="ignore"):
         of_product = np.where(np.abs(change) < NEAR_ONE, np.log1p(change), np.log(product))
         of_real = np.where(np.abs(y) < NEAR_ONE, np.log1p(y.real), np.log(z.real))
