@@ -24,7 +24,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dda.bodies.turning_body import EXACT, Turn, directions, place, turn
-from dda.contact.dense import Matrix, Vector, copy, copy_matrix, dot
+from dda.contact.dense import Matrix, Vector, copy, copy_matrix
 from dda.contact.rows import FOUND, INSIDE, LOWER, NONE, Laws, Rows, Solved, States, find, flexed, rows_of, work_for
 from dda.march.account import add_contact_losses, add_damping, over_stages
 from dda.march.step import (
@@ -53,6 +53,7 @@ from dda.model.arrays import Array
 from dda.scheme.newmark import Scheme
 
 ROUNDS = 40  # of the turn; two to four are usual
+STALE = 1e-6  # change of a place over the size of the block after which its flexibility is written anew
 SETTLED = 1e-12  # last change of a place over the size of the block; the next would be this times the step's turn
 REACH = 0.02  # gap below which a corner may come to touch in a step, over the size of the block
 PAIRS = 32  # of corners that are tried in a step
@@ -82,10 +83,9 @@ class Rolling(NamedTuple):
     late: float  # weight of the directions at the end of a step, beside those of its chord
     weight: float  # of forces at the end, in the work of the contacts
     size: float  # greatest distance of a corner from the centroid [m]
-    shapes: Matrix  # (6, n) unknowns q by the modes
-    by_unknowns: Matrix  # (n, 6) the transpose
+    shapes: Matrix  # (n, 6) unknowns q of each mode
     stiffness: Vector  # (n,) of the modes at the start [1/s^2]
-    translation: States  # (n,) 1 of modes in which the centroid moves
+    translation: States  # (n,) 1 of modes in which the centroid moves, and nothing else
     xi: Matrix  # (corners, 2)
     loads: int  # dead loads, two at most
     where: Matrix  # (2, 2) points of the outline on which they act [m]
@@ -153,8 +153,7 @@ def rolling_march(
         late=late_share(delta) if rotation == EXACT else 0.0,
         weight=delta,
         size=float(np.sqrt(np.max(np.sum(xi**2, axis=1)))),
-        shapes=shapes,
-        by_unknowns=shapes.T.copy(),
+        shapes=shapes.T.copy(),
         stiffness=np.array(body.k),
         translation=np.any(shapes[:2] != 0, axis=0).astype(np.int64),
         xi=xi,
@@ -265,8 +264,37 @@ def predict(
 
 def by_modes(rolling: Rolling, x: Vector, out: Vector) -> None:
     """Write the unknowns q of modal increments."""
-    for j in range(6):
-        out[j] = dot(rolling.shapes[j], x, len(x))
+    across = 0.0
+    up = 0.0
+    turned = 0.0
+    ex = 0.0
+    ey = 0.0
+    gxy = 0.0
+    for i in range(len(x)):
+        shape = rolling.shapes[i]
+        increment = x[i]
+        if rolling.translation[i] == 1:
+            across += shape[0] * increment
+            up += shape[1] * increment
+        else:
+            turned += shape[2] * increment
+            ex += shape[3] * increment
+            ey += shape[4] * increment
+            gxy += shape[5] * increment
+    out[0] = across
+    out[1] = up
+    out[2] = turned
+    out[3] = ex
+    out[4] = ey
+    out[5] = gxy
+
+
+def by_mode(rolling: Rolling, row: Vector, i: int) -> float:
+    """Return what a row of the unknowns is of a mode."""
+    shape = rolling.shapes[i]
+    if rolling.translation[i] == 1:
+        return float(row[0] * shape[0] + row[1] * shape[1])
+    return float(row[2] * shape[2] + row[3] * shape[3] + row[4] * shape[4] + row[5] * shape[5])
 
 
 def move(rolling: Rolling, before: RollingState, D: Vector) -> None:
@@ -340,6 +368,7 @@ def settle(
     take_pair(rolling, before, near)
     copy(rolling.guess, rolling.D)
     solves = 0
+    stale = True
     for _ in range(ROUNDS):
         turn(before.Q, rolling.D[2], rolling.exact, rolling.turn)
         push_loads(march, before)
@@ -347,7 +376,8 @@ def settle(
             rolling.loaded[i] = room.x[i] + length.numbers[3] * length.inverse[i] * room.pushed[i]
         if near > 0:
             set_rows(march, before, near)
-            write_flexibility(march, length.numbers[3], length)
+            if stale:  # the last digits of the openings are about the present forces, and need no new one
+                write_flexibility(march, length.numbers[3], length)
             add_forces(march, length)
             move(rolling, before, rolling.new)
             set_openings(march, length, near)
@@ -357,10 +387,11 @@ def settle(
                 return outcome, solves
         add_forces(march, length)
         settled = True
+        stale = False
         for j in range(6):
             change = abs(rolling.new[j] - rolling.D[j]) * (rolling.size if j > 1 else 1.0)
-            if not change <= SETTLED * rolling.size:
-                settled = False
+            settled = settled and change <= SETTLED * rolling.size
+            stale = stale or change > STALE * rolling.size
         copy(rolling.new, rolling.D)
         if settled:
             accept(march, length, start, before, after, near)
@@ -408,10 +439,9 @@ def set_rows(march: March, before: RollingState, near: int) -> None:
             corner = rolling.at[k]
             force_directions(rolling, before, rolling.xi[corner][0], rolling.xi[corner][1])
         for i in range(n):
-            shape = rolling.by_unknowns[i]
-            weight[k][i] = dot(rolling.up, shape, 6) if k < near else 0.0
+            weight[k][i] = by_mode(rolling, rolling.up, i) if k < near else 0.0
             if march.laws.paired:
-                way = dot(rolling.across, shape, 6) if k < near else 0.0
+                way = by_mode(rolling, rolling.across, i) if k < near else 0.0
                 if k == 0:
                     weight[2][i] = way / 2
                     weight[3][i] = 0.0 - way
@@ -448,9 +478,8 @@ def push_loads(march: March, before: RollingState) -> None:
     for k in range(rolling.loads):
         force_directions(rolling, before, rolling.where[k][0], rolling.where[k][1])
         for i in range(len(pushed)):
-            shape = rolling.by_unknowns[i]
-            along = rolling.dead[k][0] * dot(rolling.across, shape, 6)
-            pushed[i] += march.body.mobility[i] * (along + rolling.dead[k][1] * dot(rolling.up, shape, 6))
+            along = rolling.dead[k][0] * by_mode(rolling, rolling.across, i)
+            pushed[i] += march.body.mobility[i] * (along + rolling.dead[k][1] * by_mode(rolling, rolling.up, i))
 
 
 def add_forces(march: March, length: Length) -> None:

@@ -42,7 +42,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from dda.contact.dense import Matrix, Vector, copy, eliminate, scale_of, zeros
+from dda.contact.dense import Matrix, Vector, copy, eliminate, zeros
 from dda.contact.unilateral import LAGGED, Unilateral
 
 States = Any  # (m,) array, or a list of ints
@@ -597,7 +597,8 @@ def solve_dense(laws: Laws, flexible: Flexibility, after: Rows, work: Work, clos
     if paired:
         set_pair(laws, work, size, closing)
     for a in range(size):
-        work.scale[a] = scale_of(A[a][a])
+        diagonal = abs(A[a][a])
+        work.scale[a] = 1 / math.sqrt(diagonal) if diagonal > 0 else 1.0
     for r in range(m):
         if work.tried[r] != INSIDE:
             add_bound(laws, flexible, after, work, size, r)
