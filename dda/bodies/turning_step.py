@@ -25,7 +25,7 @@ import numpy as np
 
 from dda.bodies.turning_body import EXACT, Turn, directions, place, turn
 from dda.contact.dense import Matrix, Vector, copy, copy_matrix
-from dda.contact.rows import FOUND, INSIDE, LOWER, NONE, Laws, Rows, Solved, States, find, flexed, rows_of, work_for
+from dda.contact.rows import FOUND, INSIDE, LOWER, NONE, Laws, Rows, Solved, States, find, rows_of, work_for
 from dda.march.account import add_contact_losses, add_damping, over_stages
 from dda.march.step import (
     AnyState,
@@ -42,6 +42,7 @@ from dda.march.step import (
     kept_discount,
     length_of,
     march_of,
+    move_rows,
     prescribe,
     push_modes,
     set_length,
@@ -100,8 +101,9 @@ class Rolling(NamedTuple):
     turn: Turn
     spin: Matrix  # (2, 2) dQ/dr at the end of the step
     loaded: Vector  # (n,) increments of the modes without contact forces, under the dead loads
-    guess: Vector  # (6,)
-    D: Vector  # (6,) increments of q
+    guess: Vector  # (n,) increments of the modes to begin with
+    x: Vector  # (n,) increments of the modes in the present round
+    D: Vector  # (6,) of q by these
     new: Vector  # (6,)
     q: Vector  # (6,)
     across: Vector  # (6,) directions of a point in x and in y, of the chord and of the end
@@ -169,8 +171,8 @@ def rolling_march(
         place=np.zeros((count, 2)),
         turn=Turn(*np.zeros((3, 2, 2))),
         spin=np.zeros((2, 2)),
-        loaded=np.zeros(len(body.k)),
-        **{name: np.zeros(6) for name in ("guess", "D", "new", "q", "across", "up", "across_end", "up_end")},
+        **{name: np.zeros(len(body.k)) for name in ("loaded", "guess", "x")},
+        **{name: np.zeros(6) for name in ("D", "new", "q", "across", "up", "across_end", "up_end")},
     )
     march = march_of(body, pair, scheme, np.zeros(m), rolling)
     rows = len(ground)
@@ -258,8 +260,7 @@ def predict(
     place_corners(rolling, rolling.q, rolling.turn.end, room.end, rolling.place)
     for k in range(len(rolling.near)):
         rolling.near[k] = min(rolling.rest[k][1], rolling.place[k][1])
-    coast(stage, length, start, room.pushed)
-    by_modes(rolling, room.pushed, rolling.guess)
+    coast(stage, length, start, rolling.guess)
 
 
 def by_modes(rolling: Rolling, x: Vector, out: Vector) -> None:
@@ -366,7 +367,8 @@ def settle(
         accept(march, length, start, before, after, near)
         return FOUND, 0
     take_pair(rolling, before, near)
-    copy(rolling.guess, rolling.D)
+    copy(rolling.guess, rolling.x)
+    by_modes(rolling, rolling.x, rolling.D)
     solves = 0
     stale = True
     for _ in range(ROUNDS):
@@ -376,16 +378,17 @@ def settle(
             rolling.loaded[i] = room.x[i] + length.numbers[3] * length.inverse[i] * room.pushed[i]
         if near > 0:
             set_rows(march, before, near)
-            if stale:  # the last digits of the openings are about the present forces, and need no new one
+            if stale:
                 write_flexibility(march, length.numbers[3], length)
-            add_forces(march, length)
-            move(rolling, before, rolling.new)
-            set_openings(march, length, near)
+            set_openings(march, before, near)
             outcome, spent = find(march.laws, rolling.before, length.flexible, rolling.after, march.work)
             solves += spent
             if outcome != FOUND:
                 return outcome, solves
-        add_forces(march, length)
+        push_modes(march, rolling.after.force)
+        for i in range(len(room.x)):
+            rolling.x[i] = rolling.loaded[i] + length.numbers[3] * length.inverse[i] * room.pushed[i]
+        by_modes(rolling, rolling.x, rolling.new)
         settled = True
         stale = False
         for j in range(6):
@@ -482,34 +485,28 @@ def push_loads(march: March, before: RollingState) -> None:
             pushed[i] += march.body.mobility[i] * (along + rolling.dead[k][1] * by_mode(rolling, rolling.up, i))
 
 
-def add_forces(march: March, length: Length) -> None:
-    """Write the increments of q under the present forces of the contacts."""
-    rolling = march.method
-    room = march.room
-    push_modes(march, rolling.after.force)
-    for i in range(len(room.x)):
-        room.pushed[i] = rolling.loaded[i] + length.numbers[3] * length.inverse[i] * room.pushed[i]
-    by_modes(rolling, room.pushed, rolling.new)
-
-
-def set_openings(march: March, length: Length, near: int) -> None:
-    """Write the openings without forces for the flexibility about the place to which the present forces bring them."""
+def set_openings(march: March, before: RollingState, near: int) -> None:
+    """Write the openings without forces: those of the present place, and what the rows make of the way back from it."""
     rolling = march.method
     work = march.work
     room = march.room
-    m = len(rolling.before.force)
+    free = room.free
+    displace(rolling, before, rolling.D)
+    for i in range(len(room.pushed)):
+        room.pushed[i] = rolling.loaded[i] - rolling.x[i]
+    move_rows(march.body, room.pushed, free)
     for k in range(2):
         if k >= near:
             work.q[k] = FAR
             continue
         corner = rolling.at[k]
         x, y = place(rolling.q, rolling.turn.end, rolling.xi[corner][0], rolling.xi[corner][1])
-        work.q[k] = y - room.end[1] - flexed(march.laws, length.flexible, k, rolling.after.force)
-        if m > 2:
-            way = x - room.end[0] - rolling.rest[corner][0]
-            way -= flexed(march.laws, length.flexible, 2 + k, rolling.after.force)
+        work.q[k] = y - room.end[1] + free[k]
+        if march.laws.paired:
+            way = x - room.end[0] - rolling.rest[corner][0] + free[2]
+            way += free[3] / 2 if k == 1 else 0.0 - free[3] / 2
             work.q[2 + k] = rolling.before.opening[2 + k] + way
-    if m > 2:
+    if march.laws.paired:
         work.pair[0] = (work.q[2] + work.q[3]) / 2
         work.pair[1] = work.q[3] - work.q[2]
 
