@@ -87,7 +87,7 @@ def solve(
         if motion is not None:  # what the base causes: its own displacement, and that of the block from it
             moved = modal.translation, motion.at(scheme.instants(steps))
             histories = stepped_modes(scheme, modal.frequencies, 0 * modal.load, steps, moved=moved)
-            base_columns = carried(motion, step_times(scheme, steps))
+            base_columns = carried(motion, step_times(scheme, steps), names)
             own = np.array([base_columns.get(name, np.zeros(steps)) for name in names])
             bound_overflow(observed, size)
             observed += rows @ histories + own

@@ -237,7 +237,7 @@ def observed(body: Body, states: RollingMotion, history: History) -> Columns:
     moved = (states.c[1:] - states.c[0]) @ out.T
     E = np.einsum("ai,kij,bj->abk", out, strain_matrices(states.e[1:]), out)
     a = float(np.hypot(*(body.xi[body.base[1]] - body.xi[body.base[0]])))
-    pressure = history.force[1:, : len(body.xi)].sum(axis=1) / a
+    pressure = history.force[1:, : len(body.xi)] @ np.ones(len(body.xi)) / a
     values = (moved[:, 1], pressure, moved[:, 0], states.r[1:], E[0, 0], E[1, 1], 2 * E[0, 1])
     return dict(zip(COLUMNS, values, strict=True))
 

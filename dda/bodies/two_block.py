@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -92,9 +93,9 @@ class TwoBlockModel(LoadedBlock):
         return self.gap_form.reduced()
 
 
-def carried(motion: BaseMotion | None, instants: ArrayLike) -> Columns:
-    """Return what a moving base adds to the columns: its own displacement [m]."""
+def carried(motion: BaseMotion | None, instants: ArrayLike, names: Iterable[str]) -> Columns:
+    """Return what a moving base adds to columns of some names: its own displacement [m]."""
     if motion is None:
         return {}
-    moved = motion.at(instants)
-    return {"horizontal_displacement": moved[:, 0], "displacement": moved[:, 1]}
+    records = zip(("horizontal_displacement", "displacement"), np.transpose(motion.displacement), strict=True)
+    return {name: np.interp(instants, motion.time, record) for name, record in records if name in names}

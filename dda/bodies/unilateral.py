@@ -100,9 +100,8 @@ class UnilateralModel(LoadedBlock):
         reached = len(history.solves) - 1
         with np.errstate(all="ignore"):
             values = {name: column(model, block, history, name, scheme.step) for name in request.columns}
-        for name, moved in carried(motion, step_times(scheme, reached)).items():
-            if name in values:
-                values[name] = values[name] + moved
+        for name, moved in carried(motion, step_times(scheme, reached), values).items():
+            values[name] += moved
         notes = [f"stepped, {ran.how}: contact opens and closes"]
         if n < 6:
             notes.insert(0, f"both corners as one, unknowns {', '.join(block.unknowns)}")
@@ -227,7 +226,7 @@ def solve_unilateral(
 def column(model: UnilateralModel, block: OpeningBlock, history: History, name: str, step: float) -> Array:
     """Return a column of every step."""
     if name == "contact_pressure":
-        return np.asarray(history.force[1:, : block.contacts].sum(axis=1) / model.base_length + 0.0)
+        return np.asarray(history.force[1:, : block.contacts] @ np.ones(block.contacts) / model.base_length + 0.0)
     row = block.observers[name]
     return observed(block, row, history, model.load.motion, step)[1:] - row @ block.start + 0.0
 

@@ -52,18 +52,21 @@ def eliminate(A: Matrix, right: Matrix, scale: Vector, size: int, columns: int) 
                 A[i][j], A[best][j] = A[best][j], A[i][j]
             for j in range(columns):
                 right[i][j], right[best][j] = right[best][j], right[i][j]
-        pivot = A[i][i] if A[i][i] != 0 else math.nan
+        row = A[i]
+        pivot = row[i] if row[i] != 0 else math.nan
         for k in range(i + 1, size):
-            factor = A[k][i] / pivot
+            lower = A[k]
+            factor = lower[i] / pivot
             if factor != 0:
                 for j in range(i + 1, size):
-                    A[k][j] -= factor * A[i][j]
+                    lower[j] -= factor * row[j]
                 for j in range(columns):
                     right[k][j] -= factor * right[i][j]
     for i in range(size - 1, -1, -1):
-        pivot = A[i][i] if A[i][i] != 0 else math.nan
+        row = A[i]
+        pivot = row[i] if row[i] != 0 else math.nan
         for j in range(columns):
             total = right[i][j]
             for k in range(i + 1, size):
-                total -= A[i][k] * right[k][j]
+                total -= row[k] * right[k][j]
             right[i][j] = total / pivot

@@ -588,9 +588,11 @@ def solve_dense(laws: Laws, flexible: Flexibility, after: Rows, work: Work, clos
     W = flexible.paired if paired else flexible.W
     for a in range(size):
         r = unknown[a]
+        row = A[a]
+        flexibility = W[r]
         for b in range(size):
-            A[a][b] = W[r][unknown[b]]
-        A[a][a] += laws.compliance[r] if r < n else laws.compliance[r] / work.beta[r - n]
+            row[b] = flexibility[unknown[b]]
+        row[a] += laws.compliance[r] if r < n else laws.compliance[r] / work.beta[r - n]
         right[a][0] = 0.0 - work.q[r]
         for k in range(closing):
             right[a][1 + k] = 1.0 if r == n + work.closing[k] else 0.0
