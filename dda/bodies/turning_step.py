@@ -25,7 +25,7 @@ import numpy as np
 
 from dda.bodies.turning_body import EXACT, Turn, directions, place, turn
 from dda.contact.dense import Matrix, Vector, copy, copy_matrix
-from dda.contact.rows import FOUND, INSIDE, LOWER, NONE, Laws, Rows, Solved, States, find, rows_of, work_for
+from dda.contact.rows import FOUND, INSIDE, LOWER, NONE, Laws, Rows, Solved, States, find, flexed, rows_of, work_for
 from dda.march.account import add_contact_losses, add_damping, over_stages
 from dda.march.step import (
     AnyState,
@@ -378,16 +378,16 @@ def settle(
             rolling.loaded[i] = room.x[i] + length.numbers[3] * length.inverse[i] * room.pushed[i]
         if near > 0:
             set_rows(march, before, near)
-            if stale:
+            if stale:  # openings are linear about the present forces, of which a flexibility changes no last digit
                 write_flexibility(march, length.numbers[3], length)
-            set_openings(march, before, near)
+            displace(rolling, before, rolling.D)
+            set_openings(march, length, near)
             outcome, spent = find(march.laws, rolling.before, length.flexible, rolling.after, march.work)
             solves += spent
             if outcome != FOUND:
                 return outcome, solves
-        push_modes(march, rolling.after.force)
-        for i in range(len(room.x)):
-            rolling.x[i] = rolling.loaded[i] + length.numbers[3] * length.inverse[i] * room.pushed[i]
+        add_forces(march, length)
+        copy(room.pushed, rolling.x)
         by_modes(rolling, rolling.x, rolling.new)
         settled = True
         stale = False
@@ -485,26 +485,40 @@ def push_loads(march: March, before: RollingState) -> None:
             pushed[i] += march.body.mobility[i] * (along + rolling.dead[k][1] * by_mode(rolling, rolling.up, i))
 
 
-def set_openings(march: March, before: RollingState, near: int) -> None:
-    """Write the openings without forces: those of the present place, and what the rows make of the way back from it."""
+def add_forces(march: March, length: Length) -> None:
+    """Write the increments of the modes under the present forces of the contacts."""
+    rolling = march.method
+    pushed = march.room.pushed
+    push_modes(march, rolling.after.force)
+    for i in range(len(pushed)):
+        pushed[i] = rolling.loaded[i] + length.numbers[3] * length.inverse[i] * pushed[i]
+
+
+def set_openings(march: March, length: Length, near: int) -> None:
+    """Write the openings without forces for the flexibility, linear about the present place and forces."""
     rolling = march.method
     work = march.work
     room = march.room
     free = room.free
-    displace(rolling, before, rolling.D)
+    add_forces(march, length)
     for i in range(len(room.pushed)):
-        room.pushed[i] = rolling.loaded[i] - rolling.x[i]
+        room.pushed[i] -= rolling.x[i]
     move_rows(march.body, room.pushed, free)
+    if march.laws.paired:
+        mean = free[2]
+        half = free[3] / 2
+        free[2] = mean - half
+        free[3] = mean + half
     for k in range(2):
         if k >= near:
             work.q[k] = FAR
             continue
         corner = rolling.at[k]
         x, y = place(rolling.q, rolling.turn.end, rolling.xi[corner][0], rolling.xi[corner][1])
-        work.q[k] = y - room.end[1] + free[k]
+        work.q[k] = y - room.end[1] + free[k] - flexed(march.laws, length.flexible, k, rolling.after.force)
         if march.laws.paired:
-            way = x - room.end[0] - rolling.rest[corner][0] + free[2]
-            way += free[3] / 2 if k == 1 else 0.0 - free[3] / 2
+            way = x - room.end[0] - rolling.rest[corner][0] + free[2 + k]
+            way -= flexed(march.laws, length.flexible, 2 + k, rolling.after.force)
             work.q[2 + k] = rolling.before.opening[2 + k] + way
     if march.laws.paired:
         work.pair[0] = (work.q[2] + work.q[3]) / 2
