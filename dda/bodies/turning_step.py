@@ -265,29 +265,12 @@ def predict(
 
 def by_modes(rolling: Rolling, x: Vector, out: Vector) -> None:
     """Write the unknowns q of modal increments."""
-    across = 0.0
-    up = 0.0
-    turned = 0.0
-    ex = 0.0
-    ey = 0.0
-    gxy = 0.0
+    for j in range(6):
+        out[j] = 0.0
     for i in range(len(x)):
         shape = rolling.shapes[i]
-        increment = x[i]
-        if rolling.translation[i] == 1:
-            across += shape[0] * increment
-            up += shape[1] * increment
-        else:
-            turned += shape[2] * increment
-            ex += shape[3] * increment
-            ey += shape[4] * increment
-            gxy += shape[5] * increment
-    out[0] = across
-    out[1] = up
-    out[2] = turned
-    out[3] = ex
-    out[4] = ey
-    out[5] = gxy
+        for j in range(6):
+            out[j] += shape[j] * x[i]
 
 
 def by_mode(rolling: Rolling, row: Vector, i: int) -> float:
