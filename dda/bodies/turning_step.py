@@ -256,7 +256,8 @@ def predict(
     free_modes(march, length, start, before)
     place_corners(rolling, before.q, before.Q, room.start, rolling.rest)
     by_modes(rolling, room.x, rolling.new)
-    move(rolling, before, rolling.new)
+    turn(before.Q, rolling.new[2], rolling.exact, rolling.turn)
+    displace(rolling, before, rolling.new)
     place_corners(rolling, rolling.q, rolling.turn.end, room.end, rolling.place)
     for k in range(len(rolling.near)):
         rolling.near[k] = min(rolling.rest[k][1], rolling.place[k][1])
@@ -279,12 +280,6 @@ def by_mode(rolling: Rolling, row: Vector, i: int) -> float:
     if rolling.translation[i] == 1:
         return float(row[0] * shape[0] + row[1] * shape[1])
     return float(row[2] * shape[2] + row[3] * shape[3] + row[4] * shape[4] + row[5] * shape[5])
-
-
-def move(rolling: Rolling, before: RollingState, D: Vector) -> None:
-    """Write the turn of an increment D of q, and q after it."""
-    turn(before.Q, D[2], rolling.exact, rolling.turn)
-    displace(rolling, before, D)
 
 
 def displace(rolling: Rolling, before: RollingState, D: Vector) -> None:
@@ -492,16 +487,17 @@ def set_openings(march: March, length: Length, near: int) -> None:
         half = free[3] / 2
         free[2] = mean - half
         free[3] = mean + half
+    for r in range(len(free)):
+        free[r] -= flexed(march.laws, length.flexible, r, rolling.after.force)
     for k in range(2):
         if k >= near:
             work.q[k] = FAR
             continue
         corner = rolling.at[k]
         x, y = place(rolling.q, rolling.turn.end, rolling.xi[corner][0], rolling.xi[corner][1])
-        work.q[k] = y - room.end[1] + free[k] - flexed(march.laws, length.flexible, k, rolling.after.force)
+        work.q[k] = y - room.end[1] + free[k]
         if march.laws.paired:
             way = x - room.end[0] - rolling.rest[corner][0] + free[2 + k]
-            way -= flexed(march.laws, length.flexible, 2 + k, rolling.after.force)
             work.q[2 + k] = rolling.before.opening[2 + k] + way
     if march.laws.paired:
         work.pair[0] = (work.q[2] + work.q[3]) / 2
