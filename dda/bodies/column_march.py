@@ -129,12 +129,13 @@ def body_of(column: Column, blocks: Blocks) -> Body:
     ground[0, 1] = column.rests_on_base
     if blocks.base in (ABSENT, CARRIED):
         weight[0] = 0.0
-    if blocks.base == CARRIED:
-        weight[1:2, :modes] = 0.0
-        ground[:2, 1] = np.arange(min(n, 2))
     loads = np.zeros((2 if blocks.base in (ROW, ABSENT) else 4, modes * n))  # the motion below is no modal load
     loads[0, ::modes] = -column.gravity * blocks.root
     loads[1, -modes:] = (-mean[-1], -blocks.half[-1])[:modes]
+    if blocks.base == CARRIED:  # its mode stands still
+        weight[1:2, :modes] = 0.0
+        ground[:2, 1] = np.arange(min(n, 2))
+        loads[:, :modes] = 0.0
     if blocks.base == WELDED:
         loads[0, 0] /= 2 * blocks.root[0] * blocks.root[0] / blocks.mass
         loads[3, 0] = -blocks.mass / 6 * mean[0]
@@ -192,6 +193,8 @@ def start_of(column: Column, scheme: Scheme, drive: Drive, settled: bool, march:
     rigid[0] &= column.rests_on_base
     speed = np.zeros(len(body.k))
     speed[:: blocks.modes] = blocks.root * column.velocities
+    if blocks.base == CARRIED:
+        speed[0] = 0.0
     base_speed = float(drive.velocity[0]) if column.rests_on_base else 0.0
     welds = rigid & ~opens & np.isinf(laws.upper)  # their blocks get a common velocity at once
     speed += B.T @ rigid_forces(march, speed, base_speed, welds, np.zeros(len(opens)))

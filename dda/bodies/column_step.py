@@ -393,8 +393,12 @@ def add_foot(
         moved = of_foot(blocks, after.z) - of_foot(blocks, before.z) - shortened
     else:
         row = 0 if blocks.base == WELDED else 1
+        carried = blocks.mass * blocks.gravity / (2 - row)  # a force on the block that is no load of its modes
         if row < len(after.rows.force):
             force -= (1 - late) * before.rows.force[row] + late * after.rows.force[row]
+        else:
+            carried += (1 - late) * room.start[PRESSURE] + late * room.end[PRESSURE]
+        sums[GIVEN] -= carried * moved
     if blocks.base == WELDED:  # the load of the base's acceleration, which is no force on the block
         acceleration = (1 - late) * room.start[ACCELERATION] + late * room.end[ACCELERATION]
         sums[GIVEN] += blocks.mass / 6 * acceleration * (after.z[0] - before.z[0]) / blocks.root[0]
