@@ -197,7 +197,6 @@ def glued_march(
         first=first,
         weight=np.array([row[start : start + 6] for row, start in zip(rows, first, strict=True)]),
         ground=np.column_stack([~across, across]).astype(float),
-        grounded=m,
         mobility=np.ones(len(equations.k)),
     )
     march = march_of(body, laws, scheme, np.zeros(m))
