@@ -46,7 +46,7 @@ from dda.scheme.newmark import Scheme
 
 DISPLACEMENT = "displacement"  # of the top [m]
 PRESSURE = "contact_pressure"  # on the base [Pa]
-IN_LISTS = 20  # blocks up to which plain Python is faster on lists than on arrays
+IN_LISTS = 40  # blocks up to which plain Python is faster on lists than on arrays
 AT_HEIGHTS = (DISPLACEMENT, "stress", "velocity", "force", "gap", "slip")  # the last three where a contact is
 
 
