@@ -223,7 +223,10 @@ def lowest_face(blocks: Blocks, z: Vector, base: float) -> tuple[int, float]:
 
 
 def free_faces(march: March, before: AnyState) -> None:
-    """Write the openings at the end of a stage without contact forces, but for that of a foot on a half-space."""
+    """Write the openings at the end of a stage without contact forces.
+
+    A foot on a half-space has its own; that of nothing below is zero from the start.
+    """
     blocks = march.method
     room = march.room
     modes = blocks.modes
