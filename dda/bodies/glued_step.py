@@ -113,7 +113,7 @@ class StageSolver:
         """Factorise the matrix of the glue, and find what forces of the contacts move."""
         self.glue = glue
         alpha = (stage.alpha + stage.delta * glue.lag) / glue.mass_factor
-        self.numbers = shortened(stage._replace(alpha=alpha), glue.scheme.gg, ratio)
+        self.numbers = shortened(stage, alpha, glue.scheme.gg, ratio)
         self.weight = implicit_weight(self.numbers)
         self.s = 1 + self.weight * glue.k
         self.inverse = 1 / self.s
@@ -155,11 +155,14 @@ class StageSolver:
         return x, dmu
 
 
-def shortened(stage: Stage, gg: float, ratio: float) -> Stage:
-    """Return the numbers of a stage of a shorter step, for a state in units of the whole one."""
-    by_velocity = {name: ratio * getattr(stage, name) for name in ("d_u", "d_g", "g_0", "g_g", "delta")}
-    by_acceleration = {name: ratio * ratio * getattr(stage, name) for name in ("e_0", "e_g", "alpha")}
-    return stage._replace(gg=gg**ratio, **by_velocity, **by_acceleration)
+def shortened(stage: Stage, alpha: float, gg: float, ratio: float) -> Stage:
+    """Return the numbers of a stage of a shorter step with another alpha, for a state in units of the whole one."""
+    numbers = {name: getattr(stage, name) for name in Stage._fields} | {"alpha": alpha, "gg": gg**ratio}
+    for name in ("d_u", "d_g", "g_0", "g_g", "delta"):
+        numbers[name] *= ratio
+    for name in ("e_0", "e_g", "alpha"):
+        numbers[name] *= ratio * ratio
+    return Stage(**numbers)
 
 
 def glued_march(
@@ -194,7 +197,6 @@ def glued_march(
         first=first,
         weight=np.array([row[start : start + 6] for row, start in zip(rows, first, strict=True)]),
         ground=np.column_stack([~across, across]).astype(float),
-        grounded=m,
         mobility=np.ones(len(equations.k)),
     )
     march = march_of(body, laws, scheme, np.zeros(m))
@@ -222,8 +224,8 @@ def glued_march(
         share=scheme.alpha / beta if beta else 1.0,
     )
     between = start_state(glue, np.zeros(m), 0 * equations.k, np.zeros(2))
-    lists: March = as_lists(march)
-    return lists._replace(between=between, method=glue)
+    lists: March = as_lists(march._replace(between=between, method=glue))
+    return lists
 
 
 def start_state(glue: Glue, opening: Array, velocity: Array, moved: Array) -> GluedState:

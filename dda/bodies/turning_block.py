@@ -145,7 +145,6 @@ class RollingModel(LoadedBlock):
                 first=np.zeros(rows, dtype=np.int64),
                 weight=np.zeros((rows, 6)),
                 ground=np.zeros((rows, 2)),
-                grounded=0,
                 mobility=np.ones(6),
             ),
             laws_of(law, 2, rows, options.solve_limit),
