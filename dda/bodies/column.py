@@ -203,11 +203,6 @@ class Column:
             raise ValueError(f"joints: must lie where blocks meet, below the top, got {joint.height!r} m")
         return number
 
-    @cached_property
-    def springs(self) -> list[float | None]:
-        """Stiffness of the spring below every block [Pa/m], None where faces move alike."""
-        return [self.glue if contact is None else contact.stiffness for contact in self.contacts]
-
     def block_at(self, height: float) -> tuple[int, float]:
         """Return the block at a height and the share of its height below; of two that meet there, the lower one.
 

@@ -140,7 +140,7 @@ class Equations:
 
         compliance = compliances(self.column)
         closed = compliance > 0
-        alike = np.array([spring is None for spring in self.column.springs])
+        alike = np.array([self.column.glue is None and contact is None for contact in self.column.contacts])
         alike[0] = False  # a foot on a half-space is free, one on a base has a spring for its block
         springs = diags_array(1 / np.sqrt(compliance[closed])) @ self.B[closed]
         K = diags_array(self.body.k) + springs.T @ springs

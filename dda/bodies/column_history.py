@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dda.bodies.column import NEAR, Column
-from dda.bodies.column_march import Drive, base_of, blocks_of, body_of, course_of, laws_of, start_of
+from dda.bodies.column_march import Drive, base_of, blocks_of, body_of, course_of, laws_of, start_of, write_rows
 from dda.bodies.column_step import (
     ABSENT,
     CARRIED,
@@ -46,7 +46,7 @@ from dda.scheme.newmark import Scheme
 
 DISPLACEMENT = "displacement"  # of the top [m]
 PRESSURE = "contact_pressure"  # on the base [Pa]
-IN_LISTS = 20  # blocks up to which plain Python is faster on lists than on arrays
+IN_LISTS = 40  # blocks up to which plain Python is faster on lists than on arrays
 AT_HEIGHTS = (DISPLACEMENT, "stress", "velocity", "force", "gap", "slip")  # the last three where a contact is
 
 
@@ -136,6 +136,7 @@ def solve_column(
     body = body_of(column, blocks)
     course = course_of(drive, scheme, len(body.loads))
     march = march_of(body, laws_of(column, options.solve_limit, options.bonded), scheme, blocks.gap, blocks)
+    write_rows(march)
     march.room.end[:] = course.value[0]
     start = start_of(column, scheme, drive, options.settled, march)
     march = march._replace(between=deepcopy(start))

@@ -19,6 +19,8 @@ from dda.bodies.column_step import (
     Blocks,
     ColumnState,
     Observed,
+    of_foot,
+    place_blocks,
 )
 from dda.contact.band import find_in_band
 from dda.contact.rows import INSIDE, LOWER, Laws, rows_of
@@ -59,7 +61,7 @@ class Drive:
 
 def base_of(column: Column) -> int:
     """Return what is below the lowest block."""
-    welded = column.springs[0] is None
+    welded = column.glue is None and column.contacts[0] is None
     if column.rests_on_base:
         on_base = CARRIED if math.isinf(column.moduli[0]) else WELDED
         return on_base if welded else ROW
@@ -109,46 +111,48 @@ def blocks_of(column: Column, observed: Observed) -> Blocks:
     if base == WELDED:  # the motion of its top alone
         root[0] /= math.sqrt(3)
         half[0] = 0.0
+    mean = 1 / root
+    if base == CARRIED:
+        mean[0] = 0.0
     gaps = np.array([spring.gap for spring in springs_of(column)])
     modes = 2 if half.any() else 1
-    return Blocks(root, half, gaps, modes, base, float(masses[0]), column.gravity, impedance(column), observed)
+    return Blocks(root, mean, half, gaps, modes, base, float(masses[0]), column.gravity, impedance(column), observed)
 
 
 def body_of(column: Column, blocks: Blocks) -> Body:
     """Return the column in its modes; row 0 has no weights where nothing is below."""
     n = len(blocks.root)
     modes = blocks.modes
-    mean = 1 / blocks.root
+    mean = blocks.mean
     k = np.zeros(modes * n)
-    k[modes - 1 :: modes] = np.where(blocks.half > 0, stiffness(column) / (blocks.root * blocks.root), 0.0)
+    k[modes - 1 :: modes] = (blocks.half > 0) * stiffness(column) / blocks.root**2
     weight = np.zeros((n, 4))
     weight[0, :2] = mean[0], -blocks.half[0]
     weight[1:] = np.column_stack([-mean[:-1], -blocks.half[:-1], mean[1:], -blocks.half[1:]])
     weight = weight[:, : 2 * n : 3 - modes].copy()
     ground = np.zeros((n, 2))
     ground[0, 1] = column.rests_on_base
-    if blocks.base in (ABSENT, CARRIED):
+    if blocks.base == ABSENT:
         weight[0] = 0.0
-    if blocks.base == CARRIED:
-        weight[1:2, :modes] = 0.0
-        ground[:2, 1] = np.arange(min(n, 2))
     loads = np.zeros((2 if blocks.base in (ROW, ABSENT) else 4, modes * n))  # the motion below is no modal load
     loads[0, ::modes] = -column.gravity * blocks.root
     loads[1, -modes:] = (-mean[-1], -blocks.half[-1])[:modes]
+    if blocks.base == CARRIED:  # its mode stands still
+        loads[0, 0] = 0.0
+        ground[:2, 1] = np.arange(min(n, 2))
     if blocks.base == WELDED:
         loads[0, 0] /= 2 * blocks.root[0] * blocks.root[0] / blocks.mass
         loads[3, 0] = -blocks.mass / 6 * mean[0]
     first = np.maximum(modes * (np.arange(n) - 1), 0)
-    return Body(k, loads, np.zeros(len(loads)), first, weight, ground, min(n, 2), np.ones(len(k)))
+    return Body(k, loads, np.zeros(len(loads)), first, weight, ground, np.ones(len(k)))
 
 
 def laws_of(column: Column, solve_limit: int | None, bonded: bool) -> Laws:
     """Return the laws of the rows."""
     springs = springs_of(column)
     n = len(springs)
-    opens = np.zeros(n, dtype=np.int64)
-    if column.law == "unilateral" and not bonded:
-        opens[:] = [spring is not None for spring in column.contacts]
+    may_open = column.law == "unilateral" and not bonded
+    opens = np.array([may_open and spring is not None for spring in column.contacts], dtype=np.int64)
     strength = np.array([math.inf if bonded else spring.strength for spring in springs])
     return Laws(
         contacts=n,
@@ -158,7 +162,7 @@ def laws_of(column: Column, solve_limit: int | None, bonded: bool) -> Laws:
         upper=strength,
         opens=opens,
         friction=0.0,
-        slips=False,
+        slips=bool(np.any((opens == 0) & np.isfinite(strength))),
         lagged=False,
         paired=False,
         banded=True,
@@ -177,6 +181,22 @@ def course_of(drive: Drive, scheme: Scheme, loads: int) -> Course:
     return Course(instants, np.column_stack(parts[: 2 + loads]), np.zeros(1, dtype=np.int64))
 
 
+def write_rows(march: March) -> None:
+    """Write what forces move: in an explicit stage nothing before its end, where h^2 accelerations hold rigid rows.
+
+    What they move of the row beside is left in `Flexibility.paired`, and what the foot on a half-space has of its own.
+    """
+    rigid = march.laws.compliance == 0
+    both = np.array([rigid, rigid & np.append(rigid[1:], False)])
+    for stage in (march.first, march.last):
+        length = stage.whole
+        flexible = length.flexible
+        write_flexibility(march, length.numbers[3] or length.numbers[2] ** 2, length)
+        flexible.paired[:] = flexible.W
+        flexible.W[:] *= both | (length.numbers[3] > 0)
+        flexible.paired[0] = flexible.W[0]
+
+
 # ---- start -----------------------------------------------------------------------------------------------------------
 
 
@@ -192,22 +212,23 @@ def start_of(column: Column, scheme: Scheme, drive: Drive, settled: bool, march:
     rigid[0] &= column.rests_on_base
     speed = np.zeros(len(body.k))
     speed[:: blocks.modes] = blocks.root * column.velocities
-    base_speed = float(drive.velocity[0]) if column.rests_on_base else 0.0
+    if blocks.base == CARRIED:
+        speed[0] = 0.0
+    base_speed = drive.velocity[0] * column.rests_on_base
     welds = rigid & ~opens & np.isinf(laws.upper)  # their blocks get a common velocity at once
     speed += B.T @ rigid_forces(march, speed, base_speed, welds, np.zeros(len(opens)))
     opening = blocks.gap - body.ground[:, 1] * drive.displacement[0]
     # springs have the forces of the gaps; rigid contacts, and welds, have none before the accelerations are known
-    spring = laws.compliance > 0
-    force = np.clip(np.where(spring, -opening / np.where(spring, laws.compliance, 1.0), 0.0), laws.lower, laws.upper)
+    stiff = laws.compliance == 0
+    force = np.clip(-opening * ~stiff / (laws.compliance + stiff), laws.lower, laws.upper)
     z = np.zeros(len(body.k))
     if settled:
-        z, force = static(column, blocks, laws, float(drive.displacement[0]))
+        z, force = static(column, blocks)
         opening = -force * laws.compliance
         rigid[:] = False
     elif blocks.base == HALF_SPACE:
-        force[0] = blocks.impedance * (2 * drive.velocity[0] - body.weight[0, : blocks.modes] @ speed[: blocks.modes])
+        force[0] = blocks.impedance * (2 * drive.velocity[0] - of_foot(blocks, speed))
     own = march.room.end[2:] @ body.loads - body.k * z
-    a = np.zeros(len(z))
     if scheme.start == "consistent":
         unknown = rigid & (~opens | (opening == 0))
         rate = row_rates(march, speed, base_speed)
@@ -216,13 +237,17 @@ def start_of(column: Column, scheme: Scheme, drive: Drive, settled: bool, march:
         backwards = unknown & ~opens & (rate < -nothing) & np.isfinite(laws.upper)
         # a contact that slips has its strength against the slip, one whose faces part has none
         force = np.where(forwards, laws.lower, np.where(backwards, laws.upper, force))
-        force = rigid_forces(march, own, float(drive.acceleration[0]), unknown & ~forwards & ~backwards, force)
-        a = own + B.T @ force
-    R = own + B.T @ force
-    rows = rows_of(opening, initial_states(laws, force))
+        force = rigid_forces(march, own, drive.acceleration[0], unknown & ~forwards & ~backwards, force)
+    R = dt * dt * (own + B.T @ force)
+    a = R * (scheme.start == "consistent")
+    # what opens is closed where it is pressed, what slips holds below its strength
+    rows = rows_of(opening, np.where((force <= laws.lower) & opens, LOWER, INSIDE))
     rows.force[:] = force
-    p = late_momentum(scheme, dt * speed, dt * dt * a)
-    return ColumnState(z, p, dt * dt * a, dt * dt * R, np.zeros(len(opening)), rows, np.zeros(2))
+    p = late_momentum(scheme, dt * speed, a)
+    state = ColumnState(z, p, a, R, np.zeros(len(opening)), rows, np.zeros(2))
+    if settled:
+        place_blocks(march, state)
+    return state
 
 
 def matrix_of(body: Body) -> Array:
@@ -231,11 +256,6 @@ def matrix_of(body: Body) -> Array:
     for row, first, weight in zip(matrix, body.first, body.weight, strict=True):
         row[first : first + len(weight)] = weight
     return matrix
-
-
-def initial_states(laws: Laws, force: Array) -> Array:
-    """Return the states at t = 0: what opens is closed where it is pressed, what slips holds below its strength."""
-    return np.where((force <= laws.lower) & (laws.opens == 1), LOWER, INSIDE)
 
 
 def rigid_forces(march: March, rates: Array, base: float, unknown: Array, force: Array) -> Array:
@@ -279,16 +299,14 @@ def row_rates(march: March, rates: Array, base: float) -> Array:
     return moved
 
 
-def static(column: Column, blocks: Blocks, laws: Laws, base: float) -> ArrayPair:
-    """Return modes and forces at rest: every contact carries the weight above it; a pressure acts from t = 0 on."""
+def static(column: Column, blocks: Blocks) -> ArrayPair:
+    """Return stretches and forces at rest: every contact carries the weight above it; a pressure acts from t = 0 on."""
     weights = column.gravity * inertia(column)
     carried = np.append(np.cumsum(weights[::-1])[::-1], 0.0)
     stretch = -(carried[:-1] + carried[1:]) / 2 * column.heights / column.moduli
     if blocks.base in (WELDED, CARRIED):
         carried[0] = (carried[0] + carried[1]) / 2 if blocks.base == WELDED else 0.0
         stretch[0] = 0.0
-    tops = base + np.cumsum(stretch - carried[:-1] * laws.compliance - blocks.gap)
     z = np.zeros(blocks.modes * len(weights))
     z[blocks.modes - 1 :: blocks.modes] = blocks.root / math.sqrt(12) * stretch
-    z[:: blocks.modes] = blocks.root * (tops - stretch / 2)  # the last as well where there is no other
     return z, carried[:-1]

@@ -51,19 +51,16 @@ from dda.march.step import (
     March,
     Part,
     StageRoom,
-    coupling,
     end_modes,
     end_paths,
     free_end,
     free_modes,
-    free_rows,
     kept_discount,
     move_rows,
     prescribe,
-    push_modes,
     steps_by,
 )
-from dda.scheme.stage import predictor, velocity_corrector
+from dda.scheme.stage import inertia_force, predictor, velocity_corrector
 
 SWEEPS = 4  # solves for each contact with all states updated at once
 ROW, ABSENT, HALF_SPACE, SPRUNG = range(4)  # what is below the lowest block; SPRUNG: a spring and a half-space
@@ -89,6 +86,7 @@ class Blocks(NamedTuple):
     """What modes and rows of a column are of it, (n,) each unless said."""
 
     root: Vector  # sqrt(m) [kg^1/2 / m]
+    mean: Vector  # displacement by the mean's mode, 1/root; 0 of a block that a base carries
     half: Vector  # half the stretch by its mode, sqrt(3/m); 0 of a rigid block
     gap: Vector  # gaps at t = 0 [m]
     modes: int  # of each block, the stretch last
@@ -124,33 +122,35 @@ def make_column_stage(
     part: Part,
 ) -> Solved:
     """Go from the end of the stage before to the end of a stage; return the outcome and the number of solves."""
-    work = march.work
     rows = after.rows
     length = stage.whole
     prescribe_instants(march, course, stage, part)
     free_modes(march, length, start, before)
-    free_rows(march, before)
+    free_faces(march, before)
     hold_base(march, stage, length, start, before, after)
-    outcome, solves = find_in_band(march.laws, before.rows, length.flexible, rows, work)
+    outcome, solves = find_in_band(march.laws, before.rows, length.flexible, rows, march.work)
     if outcome != FOUND:
         return outcome, solves
-    push_modes(march, rows.force)
+    push_blocks(march, rows.force)
     end_modes(march, length, start, before, after, len(march.body.k))
     if march.method.base == SPRUNG:
         end_surface(march, stage, length, after)
-    end_paths(march, length.flexible, before, after)
+    if march.laws.slips:
+        end_paths(march, length.flexible, before, after)
     place_blocks(march, after)
     if solves > 1:
-        for r in range(len(rows.state)):
-            if rows.state[r] != before.rows.state[r]:
+        states = rows.state
+        old = before.rows.state
+        for r in range(len(states)):
+            if states[r] != old[r]:
                 march.tally[0] += 1
     return outcome, solves
 
 
 def prescribe_instants(march: March, course: Course, stage: StageRoom, part: Part) -> None:
-    """Write what `prescribe` does, for a course whose instants are the ends of all stages: no step is ever cut."""
-    instant = march.scheme.stages * int(part.begun) + (1 if stage.numbers.begin == 0 else 2)
-    copy(course.value[instant - 1], march.room.start)
+    """Write what is prescribed at the end of a stage, and where the base was: no step of the course is ever cut."""
+    instant = march.scheme.stages * int(part.begun) + 1 + (stage.numbers.begin > 0)
+    march.room.start[1] = course.value[instant - 1][1]
     copy(course.value[instant], march.room.end)
 
 
@@ -175,9 +175,12 @@ def make_linear_stage(
     length = stage.whole
     prescribe_instants(march, course, stage, part)
     room.load[:] = room.end[2:] @ body.loads
-    by = length.factors
-    moving = by[0] * start.p + (by[1] + by[6]) * start.a + by[2] * before.p + by[3] * before.a + by[5] * start.R
-    room.x[:] = length.inverse * (moving + by[4] * (room.load - body.k * before.z))
+    numbers = stage.numbers
+    dt2 = march.scheme.step**2
+    p = length.numbers[1] * start.p
+    ahead = predictor(numbers, p, start.a, before.p, before.a)
+    held = inertia_force(numbers, dt2 * (room.load - body.k * before.z), start.R, start.a)
+    room.x[:] = length.inverse * (ahead + numbers.alpha * held)
     modes = body.first[:, None] + np.arange(body.weight.shape[1])  # that each row feels
     moved = np.einsum("rm,rm->r", body.weight, room.x[modes]) - body.ground[:, 1] * (room.end[1] - room.start[1])
     march.work.q[:] = before.rows.opening + moved
@@ -188,12 +191,12 @@ def make_linear_stage(
     after.rows.force[:] = force
     after.rows.opening[:] = -march.laws.compliance * force
     after.z[:] = before.z + room.x + length.numbers[3] * length.inverse * room.pushed
-    after.R[:] = march.scheme.step**2 * (room.load - body.k * after.z + room.pushed)
-    after.a[:] = by[7] * after.R + by[8] * start.R + by[9] * start.a
-    after.p[:] = by[10] * start.p + by[11] * start.a + by[12] * before.a + by[13] * after.a
+    after.R[:] = dt2 * (room.load - body.k * after.z + room.pushed)
+    after.a[:] = inertia_force(numbers, after.R, start.R, start.a)
+    after.p[:] = velocity_corrector(numbers, p, start.a, before.a, after.a)
     if blocks.base == SPRUNG:
         end_surface(march, stage, length, after)
-    lowest, below = lowest_face(march, after)
+    lowest, below = lowest_face(blocks, after.z, room.end[1])
     half = blocks.half[lowest:] * after.z[blocks.modes * (lowest + 1) - 1 :: blocks.modes]
     tops = below + np.cumsum((after.rows.opening - blocks.gap + after.path)[lowest:] + 2 * half)
     after.z[blocks.modes * lowest :: blocks.modes] = blocks.root[lowest:] * (tops - half)
@@ -212,12 +215,47 @@ def hold_base(
         hold_welds(march, length, before)
 
 
-def lowest_face(march: March, state: AnyState) -> tuple[int, float]:
-    """Return the first block that is placed by its row, and where the face below it is [m]."""
-    blocks = march.method
+def lowest_face(blocks: Blocks, z: Vector, base: float) -> tuple[int, float]:
+    """Return the first block that is placed by its row, and how far the face below it, or the base, has moved [m]."""
     if blocks.base == ROW or blocks.base == WELDED:
-        return 0, march.room.end[1]
-    return 1, march.room.end[1] if blocks.base == CARRIED else of_top(blocks, state.z, 0)
+        return 0, base
+    return 1, base if blocks.base == CARRIED else of_top(blocks, z, 0)
+
+
+def free_faces(march: March, before: AnyState) -> None:
+    """Write the openings at the end of a stage without contact forces.
+
+    A foot on a half-space has its own; that of nothing below is zero from the start.
+    """
+    blocks = march.method
+    room = march.room
+    modes = blocks.modes
+    mean = blocks.mean
+    half = blocks.half
+    opening = before.rows.opening
+    x = room.x
+    q = march.work.q
+    lowest, below = lowest_face(blocks, x, room.end[1] - room.start[1])
+    for i in range(lowest, len(q)):
+        middle = mean[i] * x[modes * i]
+        stretched = half[i] * x[modes * (i + 1) - 1]
+        q[i] = opening[i] + (middle - below - stretched)
+        below = middle + stretched
+
+
+def push_blocks(march: March, force: Vector) -> None:
+    """Write B' N: the mean of a block feels the difference of the forces on its faces, its stretch their sum."""
+    blocks = march.method
+    modes = blocks.modes
+    mean = blocks.mean
+    half = blocks.half
+    pushed = march.room.pushed
+    above = 0.0
+    for i in range(len(force) - 1, -1, -1):
+        below = force[i]
+        pushed[modes * (i + 1) - 1] = 0.0 - half[i] * below - half[i] * above
+        pushed[modes * i] = mean[i] * below - mean[i] * above  # where all are rigid, the only mode
+        above = below
 
 
 def place_blocks(march: March, state: AnyState) -> None:
@@ -230,12 +268,12 @@ def place_blocks(march: March, state: AnyState) -> None:
     opening = state.rows.opening
     path = state.path
     z = state.z
-    lowest, below = lowest_face(march, state)
+    lowest, below = lowest_face(blocks, z, march.room.end[1])
     for i in range(lowest, len(gap)):
         stretched = half[i] * z[modes * (i + 1) - 1]
-        mean = below + (opening[i] - gap[i]) + path[i] + stretched
-        z[modes * i] = root[i] * mean
-        below = mean + stretched
+        middle = below + (opening[i] - gap[i]) + path[i] + stretched
+        z[modes * i] = root[i] * middle
+        below = middle + stretched
 
 
 # ---- a spring above a half-space -------------------------------------------------------------------------------------
@@ -256,9 +294,9 @@ def free_surface(
     late = numbers.alpha / numbers.delta
     after.surface[0] = velocity_corrector(numbers, p, a, a_before, 0.0)
     moved = predictor(numbers, p, a, before.surface[0], a_before)
-    march.work.q[0] -= moved + late * (2 * h * march.room.end[VELOCITY] - after.surface[0])
-    own = length.numbers[3] * coupling(march.body, length.inverse, 0, 0)
-    length.flexible.W[0][0] = own + late * h / march.method.impedance
+    moved += late * (2 * h * march.room.end[VELOCITY] - after.surface[0])
+    march.work.q[0] = before.rows.opening[0] + of_foot(march.method, march.room.x) - moved
+    length.flexible.W[0][0] = length.flexible.paired[0][0] + late * h / march.method.impedance
 
 
 def end_surface(march: March, stage: StageRoom, length: Length, after: AnyState) -> None:
@@ -279,36 +317,23 @@ def free_half_space(
 
     That is v* + late h B_0 s^-1 B' N, with v* its velocity without forces; the row is over `late`, as the others are.
     """
-    body = march.body
     numbers = stage.numbers
     h = length.numbers[2]
-    speed = 0.0
     free_end(march, length, start, before, after, march.method.modes)
-    for i in range(march.method.modes):
-        speed += body.weight[0][i] * after.p[i] / march.scheme.step
-    weight = weight_of_welds(length)
+    speed = of_foot(march.method, after.p) / march.scheme.step
+    weight = length.numbers[3] or h * h  # of accelerations, as that of welds
     own = weight / (numbers.delta * (1 - numbers.af) / (1 - numbers.am) * h)
-    length.flexible.W[0][0] = weight * coupling(body, length.inverse, 0, 0) + own / march.method.impedance
+    length.flexible.W[0][0] = length.flexible.paired[0][0] + own / march.method.impedance
     march.work.q[0] = own * (speed - 2 * march.room.end[VELOCITY])
 
 
-def weight_of_welds(length: Length) -> float:
-    """Return the weight of forces in what keeps faces together: ways, in an explicit stage h^2 accelerations [s^2]."""
-    h = length.numbers[2]
-    return float(length.numbers[3] if length.numbers[3] > 0 else h * h)
-
-
 def hold_welds(march: March, length: Length, before: AnyState) -> None:
-    """Make rigid rows of an explicit stage, whose forces move nothing before it ends, those of accelerations there.
-
-    The forces of springs are known then.
-    """
+    """Make rigid rows of an explicit stage those of h^2 accelerations at its end, of springs whose forces are known."""
     body = march.body
     laws = march.laws
     room = march.room
     q = march.work.q
-    W = length.flexible.W
-    h2 = weight_of_welds(length)
+    h2 = length.numbers[2] * length.numbers[2]
     for i in range(len(body.k)):
         room.pushed[i] = h2 * (room.load[i] - body.k[i] * (before.z[i] + room.x[i]))
     move_rows(body, room.pushed, room.free)
@@ -317,46 +342,38 @@ def hold_welds(march: March, length: Length, before: AnyState) -> None:
             q[r] = room.free[r]
             if body.ground[r][1] != 0:
                 q[r] -= h2 * room.end[ACCELERATION]
-            W[0][r] = h2 * coupling(body, length.inverse, r, r)
-    for r in range(len(q) - 1):
-        W[1][r] = 0.0
-        beside = h2 * coupling(body, length.inverse, r, r + 1)
-        if laws.compliance[r] == 0 and laws.compliance[r + 1] == 0:
-            W[1][r] = beside
-        elif laws.compliance[r] == 0:
-            q[r] += beside * known_force(march, r + 1)
-        elif laws.compliance[r + 1] == 0:
-            q[r + 1] += beside * known_force(march, r)
-
-
-def known_force(march: March, r: int) -> float:
-    """Return the force of a spring that no force of the stage moves [Pa]."""
-    laws = march.laws
-    return float(min(max(0.0 - march.work.q[r] / laws.compliance[r], laws.lower[r]), laws.upper[r]))
+    beside = length.flexible.paired[1]
+    for r in range(len(q)):
+        if laws.compliance[r] > 0:
+            force = min(max(0.0 - q[r] / laws.compliance[r], laws.lower[r]), laws.upper[r])
+            if r > 0 and laws.compliance[r - 1] == 0:
+                q[r - 1] += beside[r - 1] * force
+            if r + 1 < len(q) and laws.compliance[r + 1] == 0:
+                q[r + 1] += beside[r] * force
 
 
 def of_top(blocks: Blocks, x: Vector, i: int) -> Any:
     """Return what modal values make at the top of a block."""
-    return x[blocks.modes * i] / blocks.root[i] + blocks.half[i] * x[blocks.modes * (i + 1) - 1]
+    return blocks.mean[i] * x[blocks.modes * i] + blocks.half[i] * x[blocks.modes * (i + 1) - 1]
 
 
-def of_foot(blocks: Blocks, x: Vector) -> float:
+def of_foot(blocks: Blocks, x: Vector) -> Any:
     """Return what modal values make at the foot of the lowest block."""
-    return float(x[0] / blocks.root[0] - blocks.half[0] * x[blocks.modes - 1])
+    return blocks.mean[0] * x[0] - blocks.half[0] * x[blocks.modes - 1]
 
 
-def force_of_base(march: March, state: AnyState, base: Vector) -> float:
+def force_of_base(march: March, state: AnyState, base: Vector) -> Any:
     """Return the force on the lowest block of what is below, by what is prescribed there [Pa]."""
     blocks = march.method
     rows = state.rows
     if blocks.base == CARRIED:
         above = rows.force[1] if len(rows.force) > 1 else base[PRESSURE]
-        return float(above + blocks.mass * (blocks.gravity + base[ACCELERATION]))
+        return above + blocks.mass * (blocks.gravity + base[ACCELERATION])
     force = rows.force[0]
     if blocks.base == WELDED:
         top = state.a[0] / blocks.root[0] / (march.scheme.step * march.scheme.step)
         force += blocks.mass * (blocks.gravity / 2 + base[ACCELERATION] / 3 + top / 6)
-    return float(force)
+    return force
 
 
 # ---- what is kept ----------------------------------------------------------------------------------------------------
@@ -393,8 +410,12 @@ def add_foot(
         moved = of_foot(blocks, after.z) - of_foot(blocks, before.z) - shortened
     else:
         row = 0 if blocks.base == WELDED else 1
+        carried = blocks.mass * blocks.gravity / (2 - row)  # a force on the block that is no load of its modes
         if row < len(after.rows.force):
             force -= (1 - late) * before.rows.force[row] + late * after.rows.force[row]
+        else:
+            carried += (1 - late) * room.start[PRESSURE] + late * room.end[PRESSURE]
+        sums[GIVEN] -= carried * moved
     if blocks.base == WELDED:  # the load of the base's acceleration, which is no force on the block
         acceleration = (1 - late) * room.start[ACCELERATION] + late * room.end[ACCELERATION]
         sums[GIVEN] += blocks.mass / 6 * acceleration * (after.z[0] - before.z[0]) / blocks.root[0]
@@ -409,7 +430,6 @@ def keep_observed(march: March, state: AnyState, kept: Matrix, number: int) -> b
     room = march.room
     rows = state.rows
     row = kept[number]
-    n = len(rows.state)
     lag = march.scheme.lag
     discount = kept_discount(march.scheme, number)
     columns = len(observed.kind)
@@ -431,7 +451,8 @@ def keep_observed(march: March, state: AnyState, kept: Matrix, number: int) -> b
         elif kind == FOOT:
             value = force_of_base(march, state, room.end)
         elif kind == FORCES:
-            value = lower * rows.force[i] + upper * (rows.force[i + 1] if i + 1 < n else room.end[PRESSURE])
+            above = rows.force[i + 1] if i + 1 < len(rows.force) else room.end[PRESSURE]
+            value = lower * rows.force[i] + upper * above
         elif kind == GAP:
             value = max(rows.opening[i], 0.0) if march.laws.opens[i] == 1 else 0.0
         else:
@@ -460,15 +481,14 @@ def keep_record(march: March, state: AnyState, row: Vector, columns: int) -> Non
     furthest = 0.0
     contacts = 0
     opened = 0
+    foot = march.room.end[VELOCITY] if blocks.base >= WELDED else 0.0
+    if blocks.base == CARRIED:  # as the base does
+        march.room.pushed[0] = step * blocks.root[0] * foot
     moving = half_square(march.room.pushed) / (step * step)
-    if blocks.base >= WELDED:
-        foot = march.room.end[VELOCITY]
-        top = foot if blocks.base == CARRIED else march.room.pushed[0] / blocks.root[0] / step
+    if blocks.base == WELDED:
+        top = march.room.pushed[0] / blocks.root[0] / step
         momentum = step * blocks.mass * (foot / 2 + top / 6)
         moving += blocks.mass / 6 * foot * (foot + top)
-        if blocks.base == CARRIED:
-            momentum += step * blocks.mass * foot / 3
-            moving += blocks.mass / 6 * foot * foot
     for i in range(len(rows.state)):
         mean = blocks.modes * i
         last = mean + blocks.modes - 1

@@ -113,7 +113,7 @@ class StageSolver:
         """Factorise the matrix of the glue, and find what forces of the contacts move."""
         self.glue = glue
         alpha = (stage.alpha + stage.delta * glue.lag) / glue.mass_factor
-        self.numbers = shortened(stage._replace(alpha=alpha), glue.scheme.gg, ratio)
+        self.numbers = shortened(stage, alpha, glue.scheme.gg, ratio)
         self.weight = implicit_weight(self.numbers)
         self.s = 1 + self.weight * glue.k
         self.inverse = 1 / self.s
@@ -155,11 +155,14 @@ class StageSolver:
         return x, dmu
 
 
-def shortened(stage: Stage, gg: float, ratio: float) -> Stage:
-    """Return the numbers of a stage of a shorter step, for a state in units of the whole one."""
-    by_velocity = {name: ratio * getattr(stage, name) for name in ("d_u", "d_g", "g_0", "g_g", "delta")}
-    by_acceleration = {name: ratio * ratio * getattr(stage, name) for name in ("e_0", "e_g", "alpha")}
-    return stage._replace(gg=gg**ratio, **by_velocity, **by_acceleration)
+def shortened(stage: Stage, alpha: float, gg: float, ratio: float) -> Stage:
+    """Return the numbers of a stage of a shorter step with another alpha, for a state in units of the whole one."""
+    numbers = {name: getattr(stage, name) for name in Stage._fields} | {"alpha": alpha, "gg": gg**ratio}
+    for name in ("d_u", "d_g", "g_0", "g_g", "delta"):
+        numbers[name] *= ratio
+    for name in ("e_0", "e_g", "alpha"):
+        numbers[name] *= ratio * ratio
+    return Stage(**numbers)
 
 
 def glued_march(
@@ -194,7 +197,6 @@ def glued_march(
         first=first,
         weight=np.array([row[start : start + 6] for row, start in zip(rows, first, strict=True)]),
         ground=np.column_stack([~across, across]).astype(float),
-        grounded=m,
         mobility=np.ones(len(equations.k)),
     )
     march = march_of(body, laws, scheme, np.zeros(m))
@@ -221,8 +223,9 @@ def glued_march(
         mass_factor=1 + scheme.delta * drag,
         share=scheme.alpha / beta if beta else 1.0,
     )
-    lists: March = as_lists(march)
-    return lists._replace(method=glue)
+    between = start_state(glue, np.zeros(m), 0 * equations.k, np.zeros(2))
+    lists: March = as_lists(march._replace(between=between, method=glue))
+    return lists
 
 
 def start_state(glue: Glue, opening: Array, velocity: Array, moved: Array) -> GluedState:
@@ -245,14 +248,14 @@ def run_glued(
 ) -> tuple[History, int]:
     """Make the steps from the state of `start_state` on; return them, and how they ended."""
     glue = march.method
-    start, after, between = (start_state(glue, opening, velocity, moved) for _ in range(3))
+    start, after = (start_state(glue, opening, velocity, moved) for _ in range(2))
     m = len(opening)
     kept = len(glue.observed[0])
     if m:
         kept += 2 + 2 * glue.energies
     history = history_of(steps, kept, march.laws.contacts, m, glue.energies)
     with np.errstate(all="ignore"):
-        reached, outcome = make_steps(march._replace(between=between), start, after, course, history, steps, cut)
+        reached, outcome = make_steps(march, start, after, course, history, steps, cut)
     return reached_history(history, reached), outcome
 
 

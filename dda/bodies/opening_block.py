@@ -87,7 +87,6 @@ def opening_block(model: LoadedBlock, velocity: float = 0.0, full: bool = False)
         first=np.zeros(len(B), dtype=np.int64),
         weight=B @ shapes,
         ground=np.column_stack([~across, across]).astype(float),
-        grounded=len(B),
         mobility=np.ones(len(k)),
     )
     return OpeningBlock(

@@ -140,7 +140,6 @@ class RollingModel(LoadedBlock):
                 first=np.zeros(rows, dtype=np.int64),
                 weight=np.zeros((rows, 6)),
                 ground=np.zeros((rows, 2)),
-                grounded=0,
                 mobility=np.ones(6),
             ),
             laws_of(law, 2, rows, options.solve_limit),
@@ -232,7 +231,7 @@ def observed(body: Body, states: RollingMotion, history: History) -> Columns:
     moved = (states.c[1:] - states.c[0]) @ out.T
     E = np.einsum("ai,kij,bj->abk", out, strain_matrices(states.e[1:]), out)
     a = np.hypot(*(body.xi[body.base[1]] - body.xi[body.base[0]]))
-    pressure = history.force[1:, : len(body.xi)].sum(axis=1) / a
+    pressure = history.force[1:, : len(body.xi)] @ np.ones(len(body.xi)) / a
     values = (moved[:, 1], pressure, moved[:, 0], states.r[1:], E[0, 0], E[1, 1], 2 * E[0, 1])
     return dict(zip(COLUMNS, values, strict=True))
 

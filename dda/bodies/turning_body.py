@@ -68,9 +68,11 @@ def turn(Q: Matrix, r: float, exact: bool, out: Turn) -> None:
         turned_by(Q, 1.0, r, out.end)
         turned_by(Q, 1.0, r / 2, out.mean)
         return
-    half = math.sin(r / 2) / (r / 2) if r != 0 else 1.0
-    turned_by(Q, math.cos(r), math.sin(r), out.end)
-    turned_by(Q, -half * math.sin(r / 2), half * math.cos(r / 2), out.chord)  # (R - I) / r = half W R(r/2)
+    sine = math.sin(r / 2)
+    cosine = math.cos(r / 2)
+    half = sine / (r / 2) if r != 0 else 1.0
+    turned_by(Q, 1.0 - 2 * sine * sine, 2 * sine * cosine, out.end)
+    turned_by(Q, -half * sine, half * cosine, out.chord)  # (R - I) / r = half W R(r/2)
     for i in range(2):
         for j in range(2):
             out.mean[i][j] = (out.end[i][j] + Q[i][j]) / 2

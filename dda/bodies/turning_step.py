@@ -24,7 +24,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dda.bodies.turning_body import EXACT, Turn, directions, place, turn
-from dda.contact.dense import Matrix, Vector, copy, copy_matrix, dot
+from dda.contact.dense import Matrix, Vector, copy, copy_matrix
 from dda.contact.rows import FOUND, INSIDE, LOWER, NONE, Laws, Rows, Solved, States, find, flexed, rows_of, work_for
 from dda.march.account import add_contact_losses, add_damping, over_stages
 from dda.march.step import (
@@ -42,6 +42,7 @@ from dda.march.step import (
     kept_discount,
     length_of,
     march_of,
+    move_rows,
     prescribe,
     push_modes,
     set_length,
@@ -53,6 +54,7 @@ from dda.model.arrays import Array
 from dda.scheme.newmark import Scheme
 
 ROUNDS = 40  # of the turn; two to four are usual
+STALE = 1e-6  # change of a place over the size of the block after which its flexibility is written anew
 SETTLED = 1e-12  # last change of a place over the size of the block; the next would be this times the step's turn
 REACH = 0.02  # gap below which a corner may come to touch in a step, over the size of the block
 PAIRS = 32  # of corners that are tried in a step
@@ -82,10 +84,9 @@ class Rolling(NamedTuple):
     late: float  # weight of the directions at the end of a step, beside those of its chord
     weight: float  # of forces at the end, in the work of the contacts
     size: float  # greatest distance of a corner from the centroid [m]
-    shapes: Matrix  # (6, n) unknowns q by the modes
-    by_unknowns: Matrix  # (n, 6) the transpose
+    shapes: Matrix  # (n, 6) unknowns q of each mode
     stiffness: Vector  # (n,) of the modes at the start [1/s^2]
-    translation: States  # (n,) 1 of modes in which the centroid moves
+    translation: States  # (n,) 1 of modes in which the centroid moves, and nothing else
     xi: Matrix  # (corners, 2)
     loads: int  # dead loads, two at most
     where: Matrix  # (2, 2) points of the outline on which they act [m]
@@ -100,8 +101,9 @@ class Rolling(NamedTuple):
     turn: Turn
     spin: Matrix  # (2, 2) dQ/dr at the end of the step
     loaded: Vector  # (n,) increments of the modes without contact forces, under the dead loads
-    guess: Vector  # (6,)
-    D: Vector  # (6,) increments of q
+    guess: Vector  # (n,) increments of the modes to begin with
+    x: Vector  # (n,) increments of the modes in the present round
+    D: Vector  # (6,) of q by these
     new: Vector  # (6,)
     q: Vector  # (6,)
     across: Vector  # (6,) directions of a point in x and in y, of the chord and of the end
@@ -153,8 +155,7 @@ def rolling_march(
         late=late_share(delta) if rotation == EXACT else 0.0,
         weight=delta,
         size=float(np.sqrt(np.max(np.sum(xi**2, axis=1)))),
-        shapes=shapes,
-        by_unknowns=shapes.T.copy(),
+        shapes=shapes.T.copy(),
         stiffness=np.array(body.k),
         translation=np.any(shapes[:2] != 0, axis=0).astype(np.int64),
         xi=xi,
@@ -170,8 +171,8 @@ def rolling_march(
         place=np.zeros((count, 2)),
         turn=Turn(*np.zeros((3, 2, 2))),
         spin=np.zeros((2, 2)),
-        loaded=np.zeros(len(body.k)),
-        **{name: np.zeros(6) for name in ("guess", "D", "new", "q", "across", "up", "across_end", "up_end")},
+        **{name: np.zeros(len(body.k)) for name in ("loaded", "guess", "x")},
+        **{name: np.zeros(6) for name in ("D", "new", "q", "across", "up", "across_end", "up_end")},
     )
     march = march_of(body, pair, scheme, np.zeros(m), rolling)
     rows = len(ground)
@@ -255,24 +256,30 @@ def predict(
     free_modes(march, length, start, before)
     place_corners(rolling, before.q, before.Q, room.start, rolling.rest)
     by_modes(rolling, room.x, rolling.new)
-    move(rolling, before, rolling.new)
+    turn(before.Q, rolling.new[2], rolling.exact, rolling.turn)
+    displace(rolling, before, rolling.new)
     place_corners(rolling, rolling.q, rolling.turn.end, room.end, rolling.place)
     for k in range(len(rolling.near)):
         rolling.near[k] = min(rolling.rest[k][1], rolling.place[k][1])
-    coast(stage, length, start, room.pushed)
-    by_modes(rolling, room.pushed, rolling.guess)
+    coast(stage, length, start, rolling.guess)
 
 
 def by_modes(rolling: Rolling, x: Vector, out: Vector) -> None:
     """Write the unknowns q of modal increments."""
     for j in range(6):
-        out[j] = dot(rolling.shapes[j], x, len(x))
+        out[j] = 0.0
+    for i in range(len(x)):
+        shape = rolling.shapes[i]
+        for j in range(6):
+            out[j] += shape[j] * x[i]
 
 
-def move(rolling: Rolling, before: RollingState, D: Vector) -> None:
-    """Write the turn of an increment D of q, and q after it."""
-    turn(before.Q, D[2], rolling.exact, rolling.turn)
-    displace(rolling, before, D)
+def by_mode(rolling: Rolling, row: Vector, i: int) -> float:
+    """Return what a row of the unknowns is of a mode."""
+    shape = rolling.shapes[i]
+    if rolling.translation[i] == 1:
+        return float(row[0] * shape[0] + row[1] * shape[1])
+    return float(row[2] * shape[2] + row[3] * shape[3] + row[4] * shape[4] + row[5] * shape[5])
 
 
 def displace(rolling: Rolling, before: RollingState, D: Vector) -> None:
@@ -338,8 +345,10 @@ def settle(
         accept(march, length, start, before, after, near)
         return FOUND, 0
     take_pair(rolling, before, near)
-    copy(rolling.guess, rolling.D)
+    copy(rolling.guess, rolling.x)
+    by_modes(rolling, rolling.x, rolling.D)
     solves = 0
+    stale = True
     for _ in range(ROUNDS):
         turn(before.Q, rolling.D[2], rolling.exact, rolling.turn)
         push_loads(march, before)
@@ -347,20 +356,23 @@ def settle(
             rolling.loaded[i] = room.x[i] + length.numbers[3] * length.inverse[i] * room.pushed[i]
         if near > 0:
             set_rows(march, before, near)
-            write_flexibility(march, length.numbers[3], length)
-            add_forces(march, length)
-            move(rolling, before, rolling.new)
+            if stale:  # openings are linear about the present forces, of which a flexibility changes no last digit
+                write_flexibility(march, length.numbers[3], length)
+            displace(rolling, before, rolling.D)
             set_openings(march, length, near)
             outcome, spent = find(march.laws, rolling.before, length.flexible, rolling.after, march.work)
             solves += spent
             if outcome != FOUND:
                 return outcome, solves
         add_forces(march, length)
+        copy(room.pushed, rolling.x)
+        by_modes(rolling, rolling.x, rolling.new)
         settled = True
+        stale = False
         for j in range(6):
             change = abs(rolling.new[j] - rolling.D[j]) * (rolling.size if j > 1 else 1.0)
-            if not change <= SETTLED * rolling.size:
-                settled = False
+            settled = settled and change <= SETTLED * rolling.size
+            stale = stale or change > STALE * rolling.size
         copy(rolling.new, rolling.D)
         if settled:
             accept(march, length, start, before, after, near)
@@ -408,10 +420,9 @@ def set_rows(march: March, before: RollingState, near: int) -> None:
             corner = rolling.at[k]
             force_directions(rolling, before, rolling.xi[corner][0], rolling.xi[corner][1])
         for i in range(n):
-            shape = rolling.by_unknowns[i]
-            weight[k][i] = dot(rolling.up, shape, 6) if k < near else 0.0
+            weight[k][i] = by_mode(rolling, rolling.up, i) if k < near else 0.0
             if march.laws.paired:
-                way = dot(rolling.across, shape, 6) if k < near else 0.0
+                way = by_mode(rolling, rolling.across, i) if k < near else 0.0
                 if k == 0:
                     weight[2][i] = way / 2
                     weight[3][i] = 0.0 - way
@@ -448,39 +459,47 @@ def push_loads(march: March, before: RollingState) -> None:
     for k in range(rolling.loads):
         force_directions(rolling, before, rolling.where[k][0], rolling.where[k][1])
         for i in range(len(pushed)):
-            shape = rolling.by_unknowns[i]
-            along = rolling.dead[k][0] * dot(rolling.across, shape, 6)
-            pushed[i] += march.body.mobility[i] * (along + rolling.dead[k][1] * dot(rolling.up, shape, 6))
+            along = rolling.dead[k][0] * by_mode(rolling, rolling.across, i)
+            pushed[i] += march.body.mobility[i] * (along + rolling.dead[k][1] * by_mode(rolling, rolling.up, i))
 
 
 def add_forces(march: March, length: Length) -> None:
-    """Write the increments of q under the present forces of the contacts."""
+    """Write the increments of the modes under the present forces of the contacts."""
     rolling = march.method
-    room = march.room
+    pushed = march.room.pushed
     push_modes(march, rolling.after.force)
-    for i in range(len(room.x)):
-        room.pushed[i] = rolling.loaded[i] + length.numbers[3] * length.inverse[i] * room.pushed[i]
-    by_modes(rolling, room.pushed, rolling.new)
+    for i in range(len(pushed)):
+        pushed[i] = rolling.loaded[i] + length.numbers[3] * length.inverse[i] * pushed[i]
 
 
 def set_openings(march: March, length: Length, near: int) -> None:
-    """Write the openings without forces for the flexibility about the place to which the present forces bring them."""
+    """Write the openings without forces for the flexibility, linear about the present place and forces."""
     rolling = march.method
     work = march.work
     room = march.room
-    m = len(rolling.before.force)
+    free = room.free
+    add_forces(march, length)
+    for i in range(len(room.pushed)):
+        room.pushed[i] -= rolling.x[i]
+    move_rows(march.body, room.pushed, free)
+    if march.laws.paired:
+        mean = free[2]
+        half = free[3] / 2
+        free[2] = mean - half
+        free[3] = mean + half
+    for r in range(len(free)):
+        free[r] -= flexed(march.laws, length.flexible, r, rolling.after.force)
     for k in range(2):
         if k >= near:
             work.q[k] = FAR
             continue
         corner = rolling.at[k]
         x, y = place(rolling.q, rolling.turn.end, rolling.xi[corner][0], rolling.xi[corner][1])
-        work.q[k] = y - room.end[1] - flexed(march.laws, length.flexible, k, rolling.after.force)
-        if m > 2:
-            way = x - room.end[0] - rolling.rest[corner][0]
-            way -= flexed(march.laws, length.flexible, 2 + k, rolling.after.force)
+        work.q[k] = y - room.end[1] + free[k]
+        if march.laws.paired:
+            way = x - room.end[0] - rolling.rest[corner][0] + free[2 + k]
             work.q[2 + k] = rolling.before.opening[2 + k] + way
-    if m > 2:
+    if march.laws.paired:
         work.pair[0] = (work.q[2] + work.q[3]) / 2
         work.pair[1] = work.q[3] - work.q[2]
 

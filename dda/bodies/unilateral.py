@@ -214,11 +214,11 @@ def solve_unilateral(
 def column(model: UnilateralModel, block: OpeningBlock, history: History, name: str, step: float) -> Array:
     """Return a column of every step."""
     if name == "contact_pressure":
-        return np.asarray(history.force[1:, : block.contacts].sum(axis=1) / model.base_length + 0.0)
+        return np.asarray(history.force[1:, : block.contacts] @ np.ones(block.contacts) / model.base_length + 0.0)
     (row,), (by_base,) = block.form.rows([name])
     motion = model.load.motion
     moved: Array = observed(block, row, history, motion, step)[1:] - row @ block.start + 0.0
-    if motion is not None:
+    if motion is not None and by_base.any():
         moved += motion.at(step * np.arange(1.0, len(moved) + 1)) @ by_base
     return moved
 

@@ -8,7 +8,7 @@ disagrees alone (Murty 1974), which ends for every such matrix.
 
 from __future__ import annotations
 
-from dda.contact.dense import Vector, copy
+from dda.contact.dense import copy
 from dda.contact.rows import (
     FOUND,
     INSIDE,
@@ -21,7 +21,6 @@ from dda.contact.rows import (
     Laws,
     Rows,
     Solved,
-    States,
     Work,
     next_state,
 )
@@ -43,14 +42,43 @@ def find_in_band(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, w
     lower = laws.lower
     upper = laws.upper
     opens = laws.opens
+    slips = laws.slips
     q = work.q
+    pivot = work.scale
+    right = work.first
     own = flexible.W[0]
     beside = flexible.W[1]
     copy(before.state, tried)
     solves = 0
     slack = 0.0
     while True:
-        solve_in_band(own, beside, compliance, q, tried, force, lower, upper, work.scale, work.first)
+        last = UPPER
+        coupled = 0.0
+        known = 0.0
+        diagonal = 0.0
+        right_side = 0.0
+        for r in range(m):  # Gauss over each run of rows inside of their bounds
+            state = tried[r]
+            if state != INSIDE:
+                known = lower[r] if state == LOWER else upper[r]
+                force[r] = known
+            else:
+                if last != INSIDE:
+                    right_side = 0.0 - q[r] - coupled * known
+                    diagonal = own[r] + compliance[r]
+                else:
+                    factor = coupled / diagonal
+                    right_side = 0.0 - q[r] - factor * right_side
+                    diagonal = own[r] + compliance[r] - factor * coupled
+                right[r] = right_side
+                pivot[r] = diagonal
+            last = state
+            coupled = beside[r]
+        above = 0.0
+        for r in range(m - 1, -1, -1):
+            if tried[r] == INSIDE:
+                force[r] = (right[r] - beside[r] * above) / pivot[r]
+            above = force[r]
         solves += 1
         if solves > laws.together:  # blocks which touch in common flight have states that only rounding tells apart
             slack = 0.0
@@ -63,7 +91,8 @@ def find_in_band(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, w
             z = 0.0
             if state == INSIDE:
                 opening[r] = 0.0 - row_force * compliance[r]  # no sum: a closed row keeps its digits
-                slip[r] = 0.0
+                if slips:
+                    slip[r] = 0.0
                 if lower[r] <= row_force <= upper[r]:
                     continue
             else:
@@ -74,7 +103,6 @@ def find_in_band(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, w
                     z += beside[r] * force[r + 1]
                 if opens[r] == 1:
                     opening[r] = z
-                    slip[r] = 0.0
                 else:
                     stretch = compliance[r] * row_force
                     z += stretch
@@ -92,44 +120,3 @@ def find_in_band(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, w
             return LIMIT, solves
         if solves > laws.together + ONE_BY_ONE * (m + 1):
             return NONE, solves
-
-
-def solve_in_band(
-    own: Vector,
-    beside: Vector,
-    compliance: Vector,
-    q: Vector,
-    tried: States,
-    force: Vector,
-    lower: Vector,
-    upper: Vector,
-    pivot: Vector,
-    right: Vector,
-) -> None:
-    """Write the forces of the states `tried`: Gauss over each run of rows inside of their bounds."""
-    m = len(force)
-    last = UPPER
-    for r in range(m):
-        state = tried[r]
-        if state == INSIDE:
-            diagonal = own[r] + compliance[r]
-            right_side = 0.0 - q[r]
-            if r > 0:
-                coupled = beside[r - 1]
-                if last == INSIDE:
-                    factor = coupled / pivot[r - 1]
-                    diagonal -= factor * coupled
-                    right_side -= factor * right[r - 1]
-                else:
-                    right_side -= coupled * force[r - 1]
-            pivot[r] = diagonal
-            right[r] = right_side
-        else:
-            force[r] = lower[r] if state == LOWER else upper[r]
-        last = state
-    for r in range(m - 1, -1, -1):
-        if tried[r] == INSIDE:
-            right_side = right[r]
-            if r + 1 < m:
-                right_side -= beside[r] * force[r + 1]
-            force[r] = right_side / pivot[r]

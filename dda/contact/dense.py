@@ -36,44 +36,37 @@ def copy_matrix(source: Matrix, target: Matrix) -> None:
         copy(source[i], target[i])
 
 
-def scale_of(diagonal: float) -> float:
-    """Return a power of two, which rounds nothing, that brings a diagonal entry near one from both sides."""
-    _, exponent = math.frexp(diagonal)
-    return math.ldexp(1.0, -(exponent // 2))
-
-
 def eliminate(A: Matrix, right: Matrix, scale: Vector, size: int, columns: int) -> None:
-    """Solve A X = right in place of `right`, by elimination with pivots, rows and columns scaled by `scale`."""
-    for i in range(size):
-        for j in range(size):
-            A[i][j] = A[i][j] * scale[j] * scale[i]
-        for j in range(columns):
-            right[i][j] = right[i][j] * scale[i]
+    """Solve A X = right in place of `right`, by elimination with pivots; `scale` brings the rows to one size."""
     for i in range(size):
         best = i
+        largest = abs(A[i][i]) * scale[i]
         for k in range(i + 1, size):
-            if abs(A[k][i]) > abs(A[best][i]):
+            entry = abs(A[k][i]) * scale[k]
+            if entry > largest:
                 best = k
+                largest = entry
         if best != i:
-            for j in range(size):
+            scale[i], scale[best] = scale[best], scale[i]
+            for j in range(i, size):
                 A[i][j], A[best][j] = A[best][j], A[i][j]
             for j in range(columns):
                 right[i][j], right[best][j] = right[best][j], right[i][j]
-        pivot = A[i][i] if A[i][i] != 0 else math.nan
+        row = A[i]
+        pivot = row[i] if row[i] != 0 else math.nan
         for k in range(i + 1, size):
-            factor = A[k][i] / pivot
+            lower = A[k]
+            factor = lower[i] / pivot
             if factor != 0:
                 for j in range(i + 1, size):
-                    A[k][j] -= factor * A[i][j]
+                    lower[j] -= factor * row[j]
                 for j in range(columns):
                     right[k][j] -= factor * right[i][j]
     for i in range(size - 1, -1, -1):
-        pivot = A[i][i] if A[i][i] != 0 else math.nan
+        row = A[i]
+        pivot = row[i] if row[i] != 0 else math.nan
         for j in range(columns):
             total = right[i][j]
             for k in range(i + 1, size):
-                total -= A[i][k] * right[k][j]
+                total -= row[k] * right[k][j]
             right[i][j] = total / pivot
-    for i in range(size):
-        for j in range(columns):
-            right[i][j] = right[i][j] * scale[i]

@@ -42,7 +42,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from dda.contact.dense import Matrix, Vector, copy, eliminate, scale_of, zeros
+from dda.contact.dense import Matrix, Vector, copy, eliminate, zeros
 from dda.contact.unilateral import LAGGED, Unilateral
 
 States = Any  # (m,) array, or a list of ints
@@ -588,16 +588,19 @@ def solve_dense(laws: Laws, flexible: Flexibility, after: Rows, work: Work, clos
     W = flexible.paired if paired else flexible.W
     for a in range(size):
         r = unknown[a]
+        row = A[a]
+        flexibility = W[r]
         for b in range(size):
-            A[a][b] = W[r][unknown[b]]
-        A[a][a] += laws.compliance[r] if r < n else laws.compliance[r] / work.beta[r - n]
+            row[b] = flexibility[unknown[b]]
+        row[a] += laws.compliance[r] if r < n else laws.compliance[r] / work.beta[r - n]
         right[a][0] = 0.0 - work.q[r]
         for k in range(closing):
             right[a][1 + k] = 1.0 if r == n + work.closing[k] else 0.0
     if paired:
         set_pair(laws, work, size, closing)
     for a in range(size):
-        work.scale[a] = scale_of(A[a][a])
+        diagonal = abs(A[a][a])
+        work.scale[a] = 1 / math.sqrt(diagonal) if diagonal > 0 else 1.0
     for r in range(m):
         if work.tried[r] != INSIDE:
             add_bound(laws, flexible, after, work, size, r)

@@ -71,7 +71,6 @@ class Body(NamedTuple):
     first: Any  # (m,) first of the modes that a row of contact feels
     weight: Matrix  # (m, w) its opening by this and those that follow
     ground: Matrix  # (m, 2) what a unit displacement of the base, along and away from itself, takes from the openings
-    grounded: int  # rows, the first ones, from which it takes any
     mobility: Vector  # (n,) acceleration by a unit modal force; one, unless a body grows
 
 
@@ -350,18 +349,6 @@ def write_flexibility(march: March, weight: float, length: Length) -> None:
         copy_matrix(flexible.paired, flexible.W)
 
 
-def coupling(body: Body, inverse: Vector, r: int, s: int) -> float:
-    """Return B_r s^-1 B_s' of a row and one that begins with no earlier mode."""
-    row = body.weight[r]
-    later = body.weight[s]
-    first = body.first[s]
-    ahead = first - body.first[r]
-    total = 0.0
-    for e in range(len(row) - ahead):
-        total += row[e + ahead] * (inverse[first + e] * body.mobility[first + e]) * later[e]
-    return total
-
-
 def move_rows(body: Body, x: Vector, out: Vector) -> None:
     """Write B x."""
     weight = body.weight
@@ -520,7 +507,7 @@ def free_rows(march: March, before: AnyState) -> None:
     along = room.end[0] - room.start[0]
     away = room.end[1] - room.start[1]
     move_rows(body, room.x, free)
-    for r in range(body.grounded):
+    for r in range(len(free)):
         if not (paired and r == 3):  # a base that moves leaves the difference of two ways alone
             free[r] -= ground[r][0] * along + ground[r][1] * away
     if paired:

@@ -184,7 +184,6 @@ def plane_march(model: PlaneModel, scheme: Scheme, every: int) -> March:
         first=np.zeros(2 * dense, dtype=np.int64),
         weight=np.zeros((2 * dense, 0)),
         ground=np.zeros((2 * dense, 2)),
-        grounded=0,
         mobility=np.ones(len(k)),
     )
     plane = Plane(

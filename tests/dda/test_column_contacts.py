@@ -20,6 +20,7 @@ from dda.scheme.newmark import Scheme
 
 AVERAGE, CONSTANT = (0.25, 0.5), (0.5, 1.0)
 RIGID = math.inf
+ENERGIES = ColumnOptions(energies=True)
 
 
 def still(steps):
@@ -87,7 +88,7 @@ def check_against_the_papers(problem, scheme, name, parameters, held, rigid=Fals
         lengths = faces if part in ("slip", "gap") else values  # where nothing slips they are nothing but rounding
         scale = np.max(np.abs(lengths), initial=1e-300)
         assert np.max(np.abs(observed - values), initial=0.0) < 1e-11 * scale, part
-    total = np.sum(list(result.energies.values()), axis=0)
+    total = sum(result.energies.values())
     assert np.ptp(total) < 1e-12 * max(np.max(np.abs(part)) for part in result.energies.values())
     return result.step_switches.sum()
 
@@ -135,12 +136,7 @@ def thrown(n, young, step, alpha, limit=None):
 def test_touching_elastic_blocks_close_at_once_below_the_threshold_and_one_by_one_above(n, alpha):
     speed = math.sqrt(1e9 / 2500)
     threshold = 1 / math.sqrt(6 * alpha)
-    for courant, solves in (
-        (0.8 * threshold, 2),
-        (0.999999 * threshold, 2),
-        (1.000001 * threshold, n + 1),
-        (1.5, n + 1),
-    ):
+    for courant, solves in ((0.999999 * threshold, 2), (1.000001 * threshold, n + 1), (1.5, n + 1)):
         assert thrown(n, 1e9, courant / speed, alpha).step_solves[0] == solves, courant
 
 
@@ -148,37 +144,29 @@ def test_a_limit_of_six_solves_ends_the_run_of_six_touching_rigid_blocks():
     result = thrown(6, RIGID, 1e-3, 0.5, limit=6)
     with pytest.raises(ValueError, match=r"^states: "):
         result.state_of(0)
-    assert result.outcome == "solve limit exceeded"
-    assert len(result.time) == 0
-    assert result.solves == 6
+    assert (result.outcome, len(result.time), result.solves) == ("solve limit exceeded", 0, 6)
     completed = thrown(6, RIGID, 1e-3, 0.5, limit=7)
     assert completed.outcome == "completed"
     assert completed.step_solves.tolist() == [7]
 
 
 @pytest.mark.parametrize(
-    ("impedance", "foot", "weights"),
-    [
-        (None, 1e10, AVERAGE),
-        (3e6, None, CONSTANT),
-        (None, None, (0.0, 0.5)),
-    ],
+    ("impedance", "foot", "weights"), [(None, 1e10, AVERAGE), (3e6, None, CONSTANT), (None, None, (0.0, 0.5))]
 )
 def test_a_long_column_whose_rows_never_open_steps_in_arrays_as_others_do(impedance, foot, weights, held):
     """What keeps its energies is searched on lists; glue is a joint at every face."""
     t = 2e-5 * np.arange(31)
     drive = Drive(1e-3 * np.sin(200 * t), 0.2 * np.cos(200 * t), -40 * np.sin(200 * t), 1e5 * np.cos(90 * t))
     names = ["displacement", "contact_pressure", "displacement_1", "velocity_1", "stress_1"]
-    joints = [Spring(float(k), foot or 1e9 * k) for k in range(0 if foot else 2, 14, 1 if foot else 2)]
-    joined = Column([Layer(14.0, 2500.0, 1e8, blocks=14)], "shear", None, joints, impedance)
+    joints = [Spring(float(k), foot or 1e9 * k) for k in range(0 if foot else 2, 48, 1 if foot else 2)]
+    joined = Column([Layer(48.0, 2500.0, 1e8, blocks=48)], "shear", None, joints, impedance)
     scheme = Scheme(*weights, 0.99, 2e-5)
-    energetic = solve_column(joined, scheme, drive, names, [0.4], ColumnOptions(energies=True))
-    held(f"long column {impedance} {foot}", energetic)
-    lists = energetic.columns
+    energetic = solve_column(joined, scheme, drive, names, [0.4], ENERGIES)
+    held(f"long {impedance} {foot}", energetic)
     glued = replace(joined, glue=foot, joints=[] if foot else joints)
     arrays = solve_column(glued, scheme, drive, names, [0.4]).columns
-    for name in names:
-        assert np.max(np.abs(arrays[name] - lists[name])) < 1e-11 * np.max(np.abs(lists[name]))
+    for name, values in energetic.columns.items():
+        assert np.abs(arrays[name] - values).max() < 1e-11 * np.abs(values).max()
 
 
 def test_a_rigid_block_on_a_shaken_base_moves_as_the_base_does(held):
@@ -191,33 +179,36 @@ def test_a_rigid_block_on_a_shaken_base_moves_as_the_base_does(held):
         names = ["displacement_1", "velocity_1", "contact_pressure"]
         for gg in (0.98, 1.0):  # which is not the base's
             result = solve_column(column, Scheme(0.5, 1.0, gg, 1e-4), drive, names, [0.5])
-            np.testing.assert_allclose(result.columns["displacement_1"], drive.displacement[1:], rtol=0, atol=1e-15)
-            np.testing.assert_allclose(result.columns["velocity_1"], drive.velocity[1:], rtol=0, atol=1e-13)
-        force = result.columns["contact_pressure"]
-        np.testing.assert_allclose(force, 5000 * drive.acceleration[1:], rtol=0, atol=0.03 * np.abs(force).max())
+            x, v, force = result.columns.values()
+            assert np.abs(x - drive.displacement[1:]).max() < 1e-15
+            assert np.abs(v - drive.velocity[1:]).max() < 1e-13
+        assert np.abs(force - 5000 * drive.acceleration[1:]).max() < 0.03 * np.abs(force).max()
     foot = replace(column, joints=[Spring(0.0, math.inf), *joints])
     for name, body in (("zero", replace(column, joints=[])), ("consistent", foot)):
         weights = AVERAGE if name == "consistent" else (0.0, 0.5)
         scheme = Scheme(*weights, 0.99, 1e-4, name)
-        held(f"carried {name}", solve_column(body, scheme, drive, names, [0.5], ColumnOptions(energies=True)))
+        held(f"carried {name}", solve_column(body, scheme, drive, names, [0.5], ENERGIES))
+    speeds = ["velocity_1", "velocity_2"]
+    for young, rounding in ((1e8, 1e-4), (RIGID, 1e-12)):  # an elastic one: as the scheme
+        layer = Layer(2.0, 2500.0, young, blocks=2, velocity=0.1)
+        heavy = Column([layer], law="unilateral", joints=[Spring(1.0, 1e9)], gravity=9.81)
+        result = solve_column(heavy, Scheme(*AVERAGE, 1.0, 1e-4), drive, speeds, [0.5, 1.5], ENERGIES)
+        kinetic = result.energies["kinetic"]
+        assert np.ptp(sum(result.energies.values())) < rounding * kinetic.max()
+    np.testing.assert_allclose(kinetic, 1250 * sum(v * v for v in result.columns.values()))
 
 
 def test_a_column_that_starts_settled_stays_there():
     on_springs = unilateral(layers([1.0] * 6, [2500.0] * 6, [1e9] * 6, [0.0] * 6), [1e10] * 6, [0.0] * 6)
     welded = replace(on_springs, joints=on_springs.joints[1:])
     rigid_foot = replace(welded, layers=[replace(welded.layers[0], young=RIGID), *welded.layers[1:]])
-    for column in (on_springs, welded, rigid_foot):
-        check_that_it_stays(column)
-
-
-def check_that_it_stays(column):
-    middles = (column.faces[:-1] + column.heights / 2).tolist()
     names = [f"displacement_{k + 1}" for k in range(6)]
-    scheme = Scheme(0.25, 0.5, 1.0, 1e-5, "consistent")
-    result = solve_column(column, scheme, still(60), names, middles, ColumnOptions(settled=True, energies=True))
-    for name in names:
-        np.testing.assert_allclose(result.columns[name], result.columns[name][0], rtol=1e-11)
-    assert result.step_switches.sum() == 0
-    assert result.energies is not None
-    total = np.sum(list(result.energies.values()), axis=0)  # of the loads less what the settled column stores
-    assert np.max(np.abs(total)) < 1e-9 * np.max(result.energies["springs"])
+    scheme = Scheme(*AVERAGE, 1.0, 1e-5, "consistent")
+    for column in (on_springs, welded, rigid_foot):
+        tops = column.faces[1:].tolist()
+        result = solve_column(column, scheme, still(60), names, tops, replace(ENERGIES, settled=True))
+        for x in result.columns.values():
+            np.testing.assert_allclose(x, x[0], rtol=1e-11)
+        assert result.step_switches.sum() == 0
+        total = sum(result.energies.values())  # of the loads less what the settled column stores
+        assert np.abs(total).max() < 1e-9 * result.energies["springs"].max()

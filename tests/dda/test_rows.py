@@ -85,7 +85,7 @@ def test_a_chain_in_a_band_has_the_solution_of_the_full_matrix():
         m = int(rng.integers(2, 12))
         opens = rng.integers(0, 2, m)
         strength = rng.uniform(0.1, 1.0, m)
-        laws = laws_of(m, m, rng.uniform(0.0, 0.5, m), together=int(rng.integers(1, 7)), opens=opens)
+        laws = laws_of(m, m, rng.uniform(0.0, 0.5, m), together=int(rng.integers(1, 7)), opens=opens, slips=True)
         laws = laws._replace(lower=np.where(opens, 0.0, -strength), upper=np.where(opens, math.inf, strength))
         band = np.array([rng.uniform(2.1, 4.0, m), rng.uniform(-1.0, 1.0, m)])
         W = np.diag(band[0]) + np.diag(band[1, :-1], 1) + np.diag(band[1, :-1], -1)
