@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from dda.contact.dense import Matrix, Vector, copy
+from dda.contact.dense import Vector, copy
 from dda.contact.rows import (
     FOUND,
     INSIDE,
@@ -41,6 +41,7 @@ from dda.march.step import Length
 from dda.plane.bodies import Blocks
 from dda.plane.elimination import (
     MISSING,
+    THREE,
     BlockMatrix,
     block_matrix,
     clear_blocks,
@@ -60,20 +61,18 @@ CROSSED = 1e-11  # change of that share in its last step
 LEAST_SHARE = 1e-12
 AT_LIMIT = 1e-9  # of the limit along the edge, below which a contact slips after a sweep
 STIFFEST = 1e300  # 1/s^2
-FILL = 60  # blocks of the factors for each body for which there is room
+FILL = 120  # blocks of the factors for each row of them for which there is room
 
 
 class Many(NamedTuple):
-    """The equations of the blocks that move."""
+    """The equations of the blocks that move, whose modes are three of a row of the matrix each."""
 
     blocks: Blocks
     places: Places
     slack: float  # [m]
     matrix: BlockMatrix
-    body: Any  # (b,) number among those that move; MISSING of a fixed one
-    right: Matrix  # (moving, m) right-hand side and solution
     x: Vector  # (n,) increments of the modes by forces of contact
-    residual: Vector  # (n,)
+    rest: Vector  # (n,) forces of the equilibrium that is left over, then what these add to x
     kappa: Vector  # (c,) what N changes of the ways of contacts that close
     normal: Vector  # (c,) N about which that is linear [N]
     known: Any  # (1,) how many blocks the factors have
@@ -81,22 +80,16 @@ class Many(NamedTuple):
 
 def many_of(blocks: Blocks, places: Places, size: float) -> Many:
     """Return room for the equations of these contacts; the smallest block has that size [m]."""
-    moving = np.flatnonzero(blocks.modes)
-    body = np.full(len(blocks.modes), MISSING)
-    body[moving] = np.arange(len(moving))
-    n = len(moving)
-    m = int(blocks.modes.max())
-    x, residual = np.zeros((2, int(blocks.modes.sum())))
+    x, rest = np.zeros((2, int(blocks.modes.sum())))
     kappa, normal = np.zeros((2, len(places.law)))
+    rows = len(x) // THREE
     return Many(
         blocks=blocks,
         places=places,
         slack=SLACK * size,
-        matrix=block_matrix(n, m, min(n * n, FILL * n)),
-        body=body,
-        right=np.zeros((n, m)),
+        matrix=block_matrix(rows, min(rows * rows, FILL * rows)),
         x=x,
-        residual=residual,
+        rest=rest,
         kappa=kappa,
         normal=normal,
         known=np.zeros(1, dtype=np.int64),
@@ -108,28 +101,33 @@ def set_pattern(many: Many) -> bool:
 
     Blocks of pairs that touch no more are kept until then: they cost time alone.
     """
-    if many.known[0] > 0 and not mark_pairs(many, False):
-        return True
-    clear_pattern(many.matrix)
-    mark_pairs(many, True)
-    many.known[0] = order_blocks(many.matrix)
+    if mark_pairs(many) or many.known[0] <= 0:
+        clear_pattern(many.matrix)
+        mark_pairs(many)
+        many.known[0] = order_blocks(many.matrix)
     return bool(many.known[0] > 0)
 
 
-def mark_pairs(many: Many, marks: bool) -> bool:
-    """Tell whether two bodies that touch have no block; mark them if that is asked for."""
+def mark_pairs(many: Many) -> bool:
+    """Name the blocks of bodies that touch; tell whether any had none."""
     number = many.matrix.number
-    sides = many.places.sides
     missing = False
     for k in range(many.places.count[0]):
-        i = many.body[sides[k][0]]
-        j = many.body[sides[k][1]]
-        if i >= 0 and j >= 0 and number[i][j] == MISSING:
-            missing = True
-            if marks:
-                number[i][j] = 0
-                number[j][i] = 0
+        sides = many.places.sides[k]
+        for side in range(2):
+            for row in rows_of(many, sides[side]):
+                for opposite in range(2):
+                    for column in rows_of(many, sides[opposite]):
+                        if number[row][column] == MISSING:
+                            number[row][column] = 0
+                            missing = True
     return missing
+
+
+def rows_of(many: Many, i: int) -> range:
+    """Return which rows of the matrix are of a block."""
+    first = many.blocks.first[i]
+    return range(first // THREE, (first + many.blocks.modes[i]) // THREE)
 
 
 def find_many(
@@ -215,8 +213,11 @@ def solve_states(many: Many, laws: Laws, before: Rows, length: Length, after: Ro
         assemble(many, laws, length, work)
         if not factor_blocks(many.matrix):
             return 0
-        take_solution(many)
-        add_forces(many, laws, work, after, 1.0)
+        for i in range(len(many.x)):
+            many.x[i] = 0.0
+        add_forces(many, laws, work, after, many.x, 1.0)
+        correct(many, laws, length, after, work)
+        add_forces(many, laws, work, after, many.x, 1.0)  # one difference, which rounds less than two forces do
         settled = True
         for k in range(n):
             if not closing or not closes(laws, before, work, k):
@@ -245,38 +246,27 @@ def opening_of(many: Many, work: Work, r: int) -> float:
 
 
 def assemble(many: Many, laws: Laws, length: Length, work: Work) -> None:
-    """Write matrix and right-hand side for the states `work.tried`."""
+    """Write the matrix for the states `work.tried`."""
     matrix = many.matrix
-    first = many.blocks.first
     n = laws.contacts
     clear_blocks(matrix, many.known[0])
-    for i in range(len(many.body)):
-        body = many.body[i]
-        if body < 0:
-            continue
-        block = matrix.blocks[matrix.number[body][body]]
-        modes = many.blocks.modes[i]
-        for e in range(len(many.right[body])):
-            many.right[body][e] = 0.0
-            block[e][e] = stiffness_of(length, first[i] + e) if e < modes else 1.0
+    for mode in range(len(many.x)):
+        row = mode // THREE
+        matrix.blocks[matrix.number[row][row]][mode % THREE][mode % THREE] = stiffness_of(length, mode)
     for k in range(n):
         if work.tried[k] != INSIDE:
             continue
         r = n + k
         shear_state = work.tried[r]
         stiffness = 1 / laws.compliance[k]
-        add_row(many, k, k, k, stiffness, -stiffness * work.q[k])
+        add_row(many, k, k, k, stiffness)
         if shear_state != INSIDE:
-            slope = shear_state * laws.friction[k] * stiffness
-            add_row(many, k, r, k, slope, shear_state * laws.upper[r] - slope * work.q[k])
+            add_row(many, k, r, k, shear_state * laws.friction[k] * stiffness)
         elif not is_smooth(laws, k):
             shear_stiffness = work.beta[k] / laws.compliance[r]
-            add_row(many, k, r, r, shear_stiffness, -shear_stiffness * work.q[r])
-            kappa = many.kappa[k]
-            if kappa != 0.0:  # N = -(q + B x) / c moves the share behind the crossing
-                slope = -shear_stiffness * kappa * stiffness
-                constant = shear_stiffness * kappa * (many.normal[k] + stiffness * work.q[k])
-                add_row(many, k, r, k, slope, constant)
+            add_row(many, k, r, r, shear_stiffness)
+            if many.kappa[k] != 0.0:  # N = -(q + B x) / c moves the share behind the crossing
+                add_row(many, k, r, k, -shear_stiffness * many.kappa[k] * stiffness)
 
 
 def stiffness_of(length: Length, mode: int) -> float:
@@ -285,45 +275,28 @@ def stiffness_of(length: Length, mode: int) -> float:
     return 1 / flexibility if flexibility > 0 else STIFFEST
 
 
-def add_row(many: Many, k: int, force: int, row: int, slope: float, constant: float) -> None:
-    """Add a force constant - slope B x, which pushes by the row `force` and follows the row `row` of a contact."""
+def add_row(many: Many, k: int, force: int, row: int, slope: float) -> None:
+    """Add a force -slope B x, which pushes by the row `force` and follows the row `row` of a contact."""
     matrix = many.matrix
-    modes = many.blocks.modes
     places = many.places
+    sides = places.sides[k]
     for side in range(2):
-        i = places.sides[k][side]
-        body = many.body[i]
-        if body < 0:
-            continue
         F = places.F[force][side]
-        right = many.right[body]
-        for e in range(modes[i]):
-            right[e] += F[e] * constant
+        rows = rows_of(many, sides[side])
         for opposite in range(2):
-            j = places.sides[k][opposite]
-            other = many.body[j]
-            if other < 0:
-                continue
             B = places.B[row][opposite]
-            block = matrix.blocks[matrix.number[body][other]]
-            for e in range(modes[i]):
-                push = slope * F[e]
-                if push != 0.0:
-                    for f in range(modes[j]):
-                        block[e][f] += push * B[f]
+            columns = rows_of(many, sides[opposite])
+            for i in rows:
+                for j in columns:
+                    block = matrix.blocks[matrix.number[i][j]]
+                    for e in range(THREE):
+                        push = slope * F[THREE * (i - rows.start) + e]
+                        for f in range(THREE):
+                            block[e][f] += push * B[THREE * (j - columns.start) + f]
 
 
-def take_solution(many: Many) -> None:
-    """Solve with the factors, and write the solution as increments of the modes."""
-    solve_blocks(many.matrix, many.right)
-    first = many.blocks.first
-    for i in range(len(many.body)):
-        for e in range(many.blocks.modes[i]):
-            many.x[first[i] + e] = many.right[many.body[i]][e]
-
-
-def add_forces(many: Many, laws: Laws, work: Work, after: Rows, whole: float) -> None:
-    """Write the forces that the increments make; where `whole` is zero, add what more increments add to them."""
+def add_forces(many: Many, laws: Laws, work: Work, after: Rows, x: Vector, whole: float) -> None:
+    """Write the forces that increments make; where `whole` is zero, add what more increments add to them."""
     n = laws.contacts
     for k in range(n):
         r = n + k
@@ -332,30 +305,31 @@ def add_forces(many: Many, laws: Laws, work: Work, after: Rows, whole: float) ->
             after.force[r] = 0.0
         if work.tried[k] != INSIDE:
             continue
-        N = -(whole * work.q[k] + contact_displacement(many.x, many.blocks, many.places, k)) / laws.compliance[k]
+        N = -(whole * work.q[k] + contact_displacement(x, many.blocks, many.places, k)) / laws.compliance[k]
         after.force[k] += N
         if work.tried[r] != INSIDE:
             after.force[r] += work.tried[r] * (laws.friction[k] * N + whole * laws.upper[r])
         elif not is_smooth(laws, k):
-            displacement = whole * work.q[r] + contact_displacement(many.x, many.blocks, many.places, r)
+            displacement = whole * work.q[r] + contact_displacement(x, many.blocks, many.places, r)
             displacement += many.kappa[k] * (N - whole * many.normal[k])
             after.force[r] -= displacement * work.beta[k] / laws.compliance[r]
 
 
+def correct(many: Many, laws: Laws, length: Length, after: Rows, work: Work) -> None:
+    """Add to increments and forces what the equilibrium that is left over adds to them, by the factors at hand."""
+    rest = many.rest
+    for i in range(len(rest)):
+        rest[i] = -many.x[i] * stiffness_of(length, i)
+    push_contacts(many.blocks, many.places, after.force, rest)
+    solve_blocks(many.matrix, rest)
+    for i in range(len(rest)):
+        many.x[i] += rest[i]
+    add_forces(many, laws, work, after, rest, 0.0)
+
+
 def refine(many: Many, laws: Laws, length: Length, after: Rows, work: Work) -> None:
     """Add the forces of the equilibrium that is left over, by the factors of the last solve."""
-    first = many.blocks.first
-    for i in range(len(many.x)):
-        many.residual[i] = -many.x[i] * stiffness_of(length, i)
-    push_contacts(many.blocks, many.places, after.force, many.residual)
-    for i in range(len(many.body)):
-        modes = many.blocks.modes[i]
-        if modes > 0:
-            right = many.right[many.body[i]]
-            for e in range(len(right)):
-                right[e] = many.residual[first[i] + e] if e < modes else 0.0
-    take_solution(many)
-    add_forces(many, laws, work, after, 0.0)
+    correct(many, laws, length, after, work)
     for r in range(2 * laws.contacts):
         if after.force[r] != 0.0:
             after.opening[r] = 0.0 - after.force[r] * laws.compliance[r]

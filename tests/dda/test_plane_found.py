@@ -100,7 +100,7 @@ def test_polygons_dropped_in_a_box_keep_their_accounts():
     stiffness = 1e8
     blocks = pile()
     springs = ContactSprings(stiffness, 4e7, friction=0.5)
-    result = history(model_of(blocks, springs), 3000, gg=0.999, every=10, compiled=True)
+    result = history(model_of(blocks, springs), 5000, gg=0.999, every=10, compiled=True)
     energy = own_energy(result)
     given = result.energy["kinetic"][0] - np.min(result.energy["load"])
     assert np.max(np.diff(energy)) <= 1e-12 * given
