@@ -8,16 +8,8 @@ import pytest
 
 from validation import load_scene
 from validation.diagnosis import beside
-from validation.diagnosis.beside import (
-    FARTHEST,
-    LEAST_ROWS,
-    MOST_ALIKE,
-    RunExplanation,
-    RunVerdict,
-    SceneSearch,
-    answer_of,
-    verdict_of,
-)
+from validation.diagnosis.beside import FARTHEST, RunExplanation, RunVerdict, SceneSearch, answer_of, verdict_of
+from validation.diagnosis.constants import MOST_ALIKE, ORDER
 from validation.diagnosis.evidence import Departure
 from validation.diagnosis.numbers import CandidateChange, fixed
 from validation.diagnosis.one_change import Fitted
@@ -136,7 +128,7 @@ def test_a_number_with_which_no_row_changes_is_none():
 
 
 def test_a_history_departs_by_enough_rows_for_a_cause():
-    for rows, ids in ((LEAST_ROWS, ["density-factor"]), (LEAST_ROWS - 1, [])):
+    for rows, ids in ((ORDER, ["density-factor"]), (ORDER - 1, [])):
         late = Swing(columns_of({"m": 1.5}, rows), (MASS,))
         assert [one.id for one in late.explanations()] == ids
         assert len(late.departing) == rows

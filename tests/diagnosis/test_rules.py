@@ -27,7 +27,7 @@ from validation.diagnosis.evidence import Departure
 from validation.diagnosis.fits import bar
 from validation.diagnosis.fits.fit import NAMED, NUMBERS, _side, bounds, is_factor, named
 from validation.diagnosis.fits.target import Target
-from validation.diagnosis.moves import Move, moves
+from validation.diagnosis.moves import OF_NTDDA, Move, moves
 from validation.diagnosis.numbers import CandidateChange
 from validation.diagnosis.one_change import Fitted
 from validation.diagnosis.reading import Foreign, Stepping, steppings
@@ -50,7 +50,7 @@ MOVES = [
     Move("generalised-alpha", {"family": "chung-hulbert"}, ("spectral",), (0.5, 0.9)),
     *(Move("load-factor", {"load": 0.8}), Move("young-factor", {}, ("young",), (1.3,))),
     Move("reported-point", {"point": 1.0}),
-    Move("dead-band", {"opens": True, "band": 1e-3, "reopening": search.OTHER_PROGRAMS}),
+    Move("dead-band", {"opens": True, "band": 1e-3, "reopening": OF_NTDDA}),
 ]
 
 LIMITS = [*MOVES[-5:], Move("dead-band", {}, ("band",)), Move("opening-tension", {"opens": True}, ("hold",))]

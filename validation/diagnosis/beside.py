@@ -24,8 +24,22 @@ import numpy as np
 from validation.diagnosis import evidence, sentences
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.causes import CAUSES, UNEXPLAINED, all_benign
+from validation.diagnosis.constants import (
+    ARITHMETIC,
+    CHANGE,
+    CLEARLY,
+    FAINT,
+    FARTHER,
+    MOST_ALIKE,
+    NUDGE,
+    ORDER,
+    ROUNDS,
+    SAME_NUMBER,
+    UNITS,
+    WINDOW,
+)
 from validation.diagnosis.evidence import Departure, Stage
-from validation.diagnosis.fits.bar import ARITHMETIC, LAGS, last_digits, norm, outlying, spread_of_most, white
+from validation.diagnosis.fits.bar import last_digits, norm, outlying, spread_of_most, white
 from validation.diagnosis.numbers import CandidateChange, Values
 from validation.diagnosis.one_change import Fitted, fitted, nearest, nearest_start
 from validation.diagnosis.reading import Foreign
@@ -36,30 +50,19 @@ from validation.errors import InputError
 from validation.metrics.contact import AGREED
 from validation.metrics.values import largest
 from validation.runs.history import PRESSURE, Array
-from validation.runs.numbers import significant
+from validation.runs.numbers import ROUNDING, significant
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role
 
 Candidate: TypeAlias = CandidateChange[Values]
 
-ROUNDS, NUDGE = 8, 1e-6  # evaluations of a fit, those of derivatives apart, and its relative change of a number
-SETTLED = 1e-13  # relative gain at which a fit has arrived: rows near the horizon need all digits
-FIRST_ROWS = 24  # after the first that departs, by which numbers are fitted first
-LEAST_ROWS = 12  # that depart from the scene's own: fewer tell no cause
-APART = 10.0  # times what may remain, that every other cause must leave somewhere
-CLEAR = 3.0  # times more than the best leaves beside noise that every other cause must leave
-NEAR = 0.3  # of what the scene's own run leaves, up to which a candidate is pursued to later rows
+FARTHEST = 1 / ROUNDING  # times what may remain: a run that fails is no nearer than that
+LARGEST = math.log(CLEARLY * max(UNITS))  # of a factor that a number may be wrong by
 PATIENCE = 2  # groups of rows that every candidate is fitted to
 PURSUED = 7  # candidates of a slow scene that are fitted, the nearest along their slope
-LARGEST = math.log(1e4)  # of a factor that a number may be wrong by; other units are 1e3 and 1e-3
-FARTHEST = 1e12  # times what may remain: a run that fails is no nearer than that
-POWERS = (-2.0, -1.0, -0.5, 0.5, 1.0, 2.0)  # by which numbers of one product stand for each other
-SAME_NUMBER = 1e-4  # relative: two fits that came to the same number are one
-MOST_ALIKE = 6  # causes that are listed
-ELSEWHERE = 0.1  # of a factor's logarithm: a number is none if its change by that changes no row
-NOISE = 1e-2  # of the largest value: more is not put down to noise
-NOISY = 4 * LAGS  # rows from which on noise is told from a shape by all lags
+POWERS = (-2.0, -1.0, -0.5, 0.5, 1.0, 2.0)  # given: by which numbers of one product stand for each other
+NOISY = 4 * ORDER  # rows from which on noise is told from a shape by all lags
 
 
 @dataclass(frozen=True, eq=False)
@@ -208,7 +211,7 @@ class SceneSearch:
     def is_noise(self, columns: Array) -> bool:
         """Whether columns leave noise: small, without a shape, and no row that stands out."""
         rest = self.recorded[:, : self.rows] - columns[:, : self.rows]
-        if self.rows < NOISY or self.left(columns) > NOISE:
+        if self.rows < NOISY or self.left(columns) > FAINT:
             return False
         return all(
             white(row) and not np.any(outlying(row, spread_of_most(row), unit))
@@ -217,7 +220,7 @@ class SceneSearch:
 
     def is_scene(self, tolerance: float = 0.0) -> bool:
         """Whether the rows up to the horizon are the scene's own, or differ by no more than a relative L2."""
-        if self.rows < min(LEAST_ROWS, self.scene_run.shape[1]):
+        if self.rows < min(ORDER, self.scene_run.shape[1]):
             return False
         if not len(self.departing) or self.is_noise(self.scene_run):
             return True
@@ -257,23 +260,23 @@ class SceneSearch:
         They are those `begun`, with numbers to begin from, where another search has found which can be meant.
         """
         departing = self.departing
-        if len(departing) < LEAST_ROWS or largest(self.over(self.scene_run, self.rows)) <= APART:
+        if len(departing) < ORDER or largest(self.over(self.scene_run, self.rows)) <= CLEARLY:
             return []
-        groups = [min(self.rows, int(departing[0]) + FIRST_ROWS)]  # of rows, twice as many from group to group
+        groups = [min(self.rows, int(departing[0]) + WINDOW)]  # of rows, twice as many from group to group
         while groups[-1] < self.rows:
             groups.append(min(self.rows, 2 * groups[-1]))
         candidates = list(begun) or [Fitted(change, 0.0, math.inf) for change in self.changes]
         for number, rows in enumerate(groups):
             # what remains if every row leaves as much as an explanation never may
-            near = APART * math.sqrt(rows * len(self.allowed))
+            near = CLEARLY * math.sqrt(rows * len(self.allowed))
             candidates = self._fitted(candidates, rows, number, near)
             if number + 1 >= self.patience:
-                bar = max(NEAR * norm(self.over(self.scene_run, rows)), near)
+                bar = max(norm(self.over(self.scene_run, rows)) / FARTHER, near)
                 candidates = [candidate for candidate in candidates if candidate.remainder <= bar]
         # a factor beyond is forgotten, or rigid, which candidates of their own say
         sensible = [candidate for candidate in candidates if abs(candidate.u) <= LARGEST]
         explanations = sorted(map(self.judged, sensible), key=rank)
-        explanations = [each for each in explanations if each.ratio > APART or self._is_determined(each.candidate)]
+        explanations = [each for each in explanations if each.ratio > CLEARLY or self._is_determined(each.candidate)]
         if explanations and explanations[0].explains and explanations[0].candidate.change.starts:
             explanations += self._relatives(explanations, groups[0])
         return sorted(explanations, key=rank)
@@ -282,12 +285,12 @@ class SceneSearch:
         """Return the explanations that the rows cannot tell apart, the best first; none if nothing explains."""
         if not explanations or not explanations[0].explains:
             return []
-        bar = CLEAR * explanations[0].left if explanations[0].is_noise else 0.0
+        bar = FARTHER * explanations[0].left if explanations[0].is_noise else 0.0
         listed: list[RunExplanation] = []
         for each in sorted(explanations, key=lambda each: (bool(each.candidate.change.starts), each.left)):
             # what a mesh leaves has a shape, with another cause as well; noise has none
             is_near = each.left <= bar and (each.is_noise or bool(self.model))
-            if (each.ratio <= APART or is_near) and not any(_is_same(each, other) for other in listed):
+            if (each.ratio <= CLEARLY or is_near) and not any(_is_same(each, other) for other in listed):
                 listed.append(each)
         return sorted(listed, key=rank)
 
@@ -314,14 +317,14 @@ class SceneSearch:
 
         Equations of motion have numbers in products only: a fit that ends elsewhere must not make a cause unique.
         """
-        at_hand = {id(explanation.candidate.change) for explanation in explanations if explanation.ratio <= APART}
+        at_hand = {id(explanation.candidate.change) for explanation in explanations if explanation.ratio <= CLEARLY}
         further = []
         for change in self.changes:
             if id(change) in at_hand or not change.starts:
                 continue
             for power in POWERS:
                 u = power * explanations[0].candidate.u
-                if largest(self.over(self.run(change.changed(u), rows), rows)) <= APART:
+                if largest(self.over(self.run(change.changed(u), rows), rows)) <= CLEARLY:
                     further.append(self.judged(Fitted(change, u, 0.0)))
         return further
 
@@ -338,10 +341,10 @@ class SceneSearch:
             if not candidate.change.starts:
                 return nearest_start(of_change, candidate.change)
             if number or self.is_slow:
-                best = fitted(of_change, candidate, ROUNDS, NUDGE, SETTLED)
+                best = fitted(of_change, candidate, ROUNDS, NUDGE, ROUNDING)
                 if best.remainder <= near or number >= PATIENCE or self.is_slow:
                     return best
-            return fitted(of_change, nearest_start(of_change, candidate.change), ROUNDS, NUDGE, SETTLED)
+            return fitted(of_change, nearest_start(of_change, candidate.change), ROUNDS, NUDGE, ROUNDING)
 
         if self.is_slow and not number:
             begun = [
@@ -355,7 +358,7 @@ class SceneSearch:
         """Whether some row changes with a candidate's number, where it has one."""
         if not candidate.change.starts:
             return True
-        runs = [self.run(candidate.change.changed(candidate.u + u), self.rows) for u in (0.0, -ELSEWHERE, ELSEWHERE)]
+        runs = [self.run(candidate.change.changed(candidate.u + u), self.rows) for u in (0.0, -CHANGE, CHANGE)]
         if any(run is None for run in runs):
             return True
         shares = [self.over(run, self.rows) for run in runs]

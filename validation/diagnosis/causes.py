@@ -8,24 +8,19 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
+from validation.diagnosis.constants import SAME_NUMBER, SEEN
 from validation.diagnosis.fits.fit import SPAN, Fit, changed, fit, fit_one, intervals
 from validation.diagnosis.fits.target import Target
+from validation.diagnosis.moves import FINE_BANDS
 from validation.diagnosis.schemes import split_of
 from validation.diagnosis.variant import Rectangle, Variant
+from validation.metrics.contact import AGREED
 from validation.runs.numbers import significant
 from validation.theory.edges import edge
 
 BENIGN_COMPLIANCE = 0.05  # of the static displacement, that a base may add before the springs are in question
-ROUND_EXACT = 1e-6  # relative error of a factor by a fit without noise
 ROUND_DIGITS = 2  # significant digits of a factor that a person types, and no base has by chance
-ROUND_ERROR = 1e-3  # relative error beyond which the digits of a factor are not known well enough
-TRIALS = 21  # dead bands that are tried on either side for the interval of one
-WIDEST_BAND = 5.0  # that is tried, over the fitted one
-BAND_ERROR = 3.2e-4  # relative, to which an end of that interval is found
-SAME_MISFIT = 1e-3  # relative: rows that are no better and no worse
-HALF = 0.5  # steps late: a mean of two
+HALF = 0.5  # given: steps late: a mean of two
 UNEXPLAINED = "unexplained"
 SWAPPED = "swapped"
 DIVERGED = "diverged"
@@ -61,7 +56,6 @@ FORMULAS = {
     "(7)": "velocity, (7) as printed",
 }
 INTERCHANGED = ": alpha and delta are interchanged"
-SAME_WEIGHT = 1e-4  # of alpha and delta, as noise leaves them
 BAND_FIELDS = {"dead-band": "band", "opening-tension": "hold"}  # limits of the contact, of which rows tell an interval
 DERIVED: dict[str, Callable[[Rectangle, Variant], float]] = {  # numbers that are no field of a variant
     "reported-point": lambda c, v: v.point * c.height / 2,
@@ -94,11 +88,11 @@ def benign_springs(rectangle: Rectangle, variant: Variant) -> bool:
 
 def round_factor(factor: float, error: float) -> bool:
     """Whether a factor, or one over it, is a round number within what its relative error leaves open."""
-    if error > ROUND_ERROR:
+    if error > SEEN:
         return False
     for value in (factor, 1 / factor):
         typed = float(f"{value:.{ROUND_DIGITS - 1}e}")
-        if abs(value / typed - 1) <= max(error, ROUND_EXACT):
+        if abs(value / typed - 1) <= max(error, AGREED):
             return True
     return False
 
@@ -171,19 +165,19 @@ def band_interval(target: Target, variant: Variant, cause: str = "dead-band") ->
 
     def same(bands: Sequence[float]) -> list[bool]:
         misfits = [one.misfit for one in fit(target, [(changed(variant, {field: band}), ()) for band in bands])]
-        return [abs(misfit - least) <= SAME_MISFIT * max(least, target.floor) for misfit in misfits]
+        return [abs(misfit - least) <= SEEN * max(least, target.floor) for misfit in misfits]
 
-    def end(farthest: float) -> float:
-        trials = np.geomspace(fitted, fitted * farthest, TRIALS)[1:].tolist()
+    def end(widens: float) -> float:
+        trials = [fitted * (band / FINE_BANDS[0]) ** widens for band in FINE_BANDS[1:]]
         inner = fitted
         for outer, alike in zip(trials, same(trials), strict=True):
             if not alike:
                 break
             inner = outer
-        at_end = changed(variant, {field: edge(lambda band: same([band])[0], inner, outer, BAND_ERROR)})
+        at_end = changed(variant, {field: edge(lambda band: same([band])[0], inner, outer, SAME_NUMBER)})
         return significant(values_of(target.column, [cause], at_end)[cause], 4)
 
-    return end(1 / WIDEST_BAND), end(WIDEST_BAND)
+    return end(-1.0), end(1.0)
 
 
 def roundest(low: float, high: float) -> float:
@@ -223,7 +217,7 @@ def words_of(name: str, value: float, v: Variant | None = None, scene: Variant |
         "interchanged": "",
     }
     if v is not None and scene is not None:
-        squared = scene.gg < 1 and abs(v.gg - scene.gg**2) < 1e-6
+        squared = scene.gg < 1 and abs(v.gg - scene.gg**2) < AGREED
         words |= {
             "square": ", its square" if squared else "",
             "formula": FORMULAS.get(v.discounted, ""),
@@ -239,7 +233,7 @@ def _is_interchanged(v: Variant, scene: Variant) -> bool:
     """Whether a scheme has the scene's alpha and delta in each other's place."""
     if {v.family, scene.family} != {"newmark"} or scene.alpha == scene.delta:
         return False
-    return abs(v.alpha - scene.delta) <= SAME_WEIGHT and abs(v.delta - scene.alpha) <= SAME_WEIGHT
+    return abs(v.alpha - scene.delta) <= SAME_NUMBER and abs(v.delta - scene.alpha) <= SAME_NUMBER
 
 
 def _lateness(steps: float) -> str:

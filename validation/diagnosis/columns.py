@@ -12,14 +12,16 @@ import numpy as np
 from validation.diagnosis import families
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.beside import Candidate, RunVerdict, SceneSearch, answer_of, verdict_of
+from validation.diagnosis.constants import DISCOUNTS, ROUNDS, UNBOUNDED, UNITS
 from validation.diagnosis.numbers import Values, contacts, fixed, layers, places
-from validation.diagnosis.one_change import UNITS, of_discount, of_numbers, of_schemes
-from validation.diagnosis.other_solvers import DISCOUNTS, STARTS
+from validation.diagnosis.one_change import of_discount, of_numbers, of_schemes
+from validation.diagnosis.other_solvers import STARTS
 from validation.diagnosis.reading import Foreign, Stepping, steppings
 from validation.diagnosis.readings import slips, without_slips
 from validation.errors import InputError
 from validation.metrics.contact import SHIFT
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
+from validation.runs.numbers import ROUNDING
 from validation.scenes.drive import motion_at
 from validation.scenes.scene import Scene
 from validation.solvers.columns.names import column_of
@@ -27,11 +29,8 @@ from validation.solvers.columns.names import column_of
 if TYPE_CHECKING:
     from dda.bodies.column_history import ColumnResult
 
-REPEATS = 300  # runs of a scene for one history: compiled code pays
-WIDE = 1e6  # times a gap, that never closes
-LEAST_LIMIT = 2  # solves of a step: no program gives up after fewer
+LEAST_LIMIT = 2  # given: solves of a step in which a contact changes, the second of which confirms it
 PARTS = (2, 4)  # steps of a program in one of the scene's
-NO_FRICTION = 1e-9  # of the strength: it slips all the time, which no scene can state
 BONDED = "bonded"  # among the values of a change, no key of scenes: contacts carry tension and never slip
 
 
@@ -70,13 +69,13 @@ def laws(scene: Scene) -> Iterator[Candidate]:
         gap = contacts("gap", place)
         yield fixed("gap-factor", f"the gap of {where} is forgotten", gap(scene, 0.0), 0.0)
         words = f"{where} is never reached: it is not there, or its gap is wide"
-        yield fixed("contact-missing", words, gap(scene, WIDE))
+        yield fixed("contact-missing", words, gap(scene, UNBOUNDED))
     if column.law == "unilateral":
         yield fixed("contact-locked", "the contacts carry tension", {BONDED: True})
     elif any(math.isfinite(contact.strength) for contact in column.contacts):
         yield fixed("no-slip", "the contacts do not slip", {BONDED: True})
-        free = contacts("strength")(scene, NO_FRICTION)
-        free |= contacts("friction")(scene.with_values(free), NO_FRICTION)
+        free = contacts("strength")(scene, ROUNDING)
+        free |= contacts("friction")(scene.with_values(free), ROUNDING)
         yield fixed("no-friction", "there is no friction", free)
     if any(math.isfinite(contact.stiffness) for contact in column.contacts):
         joints = stated["column"].get("joint", [])
@@ -128,7 +127,7 @@ class ColumnSearch(SceneSearch):
                 column = replace(column, joints=[replace(joint, gap=0.0) for joint in column.joints])
             steps *= round(self.scene.time.step / scene.time.step)
             drive = Drive(**vars(motion_at(scene, scene.time.step * np.arange(steps + 1.0))))
-            options = ColumnOptions(None, section.settled, bonded=is_bonded, repeats=REPEATS)
+            options = ColumnOptions(None, section.settled, bonded=is_bonded, repeats=len(self.changes) * ROUNDS)
             result = solve_column(column, scheme_of(scene), drive, list(self.NAMES), (), options)
         except (InputError, ArithmeticError, ValueError):
             return None

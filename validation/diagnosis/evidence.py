@@ -13,6 +13,7 @@ from typing import Any, Literal
 import numpy as np
 
 from validation.diagnosis.causes import all_benign
+from validation.diagnosis.constants import ARITHMETIC, CLEARLY, SEEN, SIGMAS, SLIGHT, UNBOUNDED
 from validation.diagnosis.fits.bar import norm
 from validation.diagnosis.fits.fit import Fit
 from validation.diagnosis.fits.target import Target
@@ -25,13 +26,7 @@ from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.runs.numbers import share_text
 
 Kind = Literal["phase", "amplitude", "damping", "offset"]
-DEPARTED = 1e-3  # of the largest displacement: a smaller difference is no departure
-NOISE = 4.0  # standard deviations
-BEYOND = 1e9  # times anything that the scene does: no unit is so wrong
-GROWTH = 100.0  # times as large in the last third as in the first, and as anything that the scene does
-CLOSE_STATIC, CLOSE_FREQUENCY, CLOSE_DAMPING = 1e-3, 1e-3, 0.02  # relative, and of a ratio's size: what counts as equal
-ROWS_IN_WORDS = 3
-LEAST_DAMPING = 1e-3  # damping ratios below differ by nothing that a history shows
+ROWS_IN_WORDS = 3  # single rows that a sentence tells
 
 
 @dataclass(frozen=True)
@@ -81,7 +76,7 @@ def departure(
 
 def unbounded(expected_values: Array, recorded: Array, rows: np.ndarray) -> Departure:
     """Return the first step at which a history without bounds has left the expected one."""
-    away = np.abs(recorded - expected_values) > DEPARTED * largest(expected_values)
+    away = np.abs(recorded - expected_values) > SEEN * largest(expected_values)
     return Departure(int(rows[int(np.argmax(away))]) + 1, "amplitude")
 
 
@@ -95,7 +90,7 @@ def measured(expected_values: Array, recorded: Array, rows: np.ndarray, noise: f
         size = largest(recorded) or 1.0
         r = np.clip(np.nan_to_num(expected_values), -1e3 * size, 1e3 * size)
     d = recorded - r
-    tolerance = max(DEPARTED * size, NOISE * noise)
+    tolerance = max(SEEN * size, SIGMAS * noise)
     beyond = np.flatnonzero(np.abs(d) > tolerance)
     first = int(beyond[0]) if beyond.size else int(np.argmax(np.abs(d)))
     t = (rows + 1) / (rows[-1] + 1)
@@ -138,9 +133,9 @@ def growth(values: Array, expected: Array) -> float | None:
     """Return the factor by which a diverging history grows in a step, None if it is bounded."""
     bounded = np.nan_to_num(expected, posinf=1e300, neginf=-1e300)
     thirds, theirs = ([largest(part) for part in np.array_split(each, 3)] for each in (values, bounded))
-    if thirds[2] <= BEYOND * max(theirs):
-        grows = thirds[2] > GROWTH * thirds[0] * max(1.0, theirs[2] / (theirs[0] or 1.0))
-        if not (grows and thirds[2] > thirds[1] and thirds[2] > GROWTH * max(theirs)):
+    if thirds[2] <= UNBOUNDED * max(theirs):
+        grows = thirds[2] > CLEARLY**2 * thirds[0] * max(1.0, theirs[2] / (theirs[0] or 1.0))
+        if not (grows and thirds[2] > thirds[1] and thirds[2] > CLEARLY**2 * max(theirs)):
             return None
     return math.exp((math.log(thirds[2]) - math.log(thirds[1] or thirds[2])) / (len(values) / 3))
 
@@ -203,16 +198,16 @@ def column_stage(name: str, agrees: bool, misfit: float, beside: str, numbers: d
 def _motion(target: Target, expected: Array) -> list[Stage]:
     """Return where file and scene come to rest, and how their strongest motion swings."""
     steps = np.diff(target.rows)
-    if np.ptp(target.steps) > 1e-9 * target.steps[0] or np.ptp(steps) > 0:
+    if np.ptp(target.steps) > ARITHMETIC * target.steps[0] or np.ptp(steps) > 0:
         return [Stage(name, None, "not told by unequal rows", {}) for name in ("statics", "frequency", "damping")]
     step = float(target.steps[0]) * float(steps[-1])
     theirs = swing(target.displacement, step)
     ours = swing(expected, step)
     close = target.bars[0].allowed
-    stages = [_beside("statics", "comes to rest at", "m", theirs.static, ours.static, max(close, CLOSE_STATIC))]
+    stages = [_beside("statics", "comes to rest at", "m", theirs.static, ours.static, max(close, SEEN))]
     for name, verb, unit, least in (
-        ("frequency", "swings at", "rad/s", CLOSE_FREQUENCY),
-        ("damping", "is damped by", "of critical", CLOSE_DAMPING),
+        ("frequency", "swings at", "rad/s", SEEN),
+        ("damping", "is damped by", "of critical", SLIGHT),
     ):
         file, scene = (None if each.pole is None else float(getattr(each.pole, name)) for each in (theirs, ours))
         stages.append(_beside(name, verb, unit, file, scene, max(close, least)))
@@ -222,7 +217,7 @@ def _motion(target: Target, expected: Array) -> list[Stage]:
 def _beside(name: str, verb: str, unit: str, file: float | None, scene: float | None, close: float) -> Stage:
     if file is None or scene is None:
         return Stage(name, None, "not told by these rows", {"file": file, "scene": scene, "ratio": None})
-    least = LEAST_DAMPING if name == "damping" else 0.0
+    least = SEEN if name == "damping" else 0.0
     agrees = abs(file - scene) <= max(close * abs(scene), least)
     ratio = file / scene if abs(scene) > 1e-12 and abs(file / scene) < 1e6 else None
     words = f"{verb} {file:.5g} {unit}, " + ("as the scene" if agrees else f"the scene {scene:.5g}")

@@ -13,6 +13,7 @@ from validation.diagnosis import causes, evidence, families, schemes, sentences,
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.beside import RunVerdict, answer_of
 from validation.diagnosis.causes import CAUSES, DIVERGED, SINGLE_ROWS, SWAPPED, UNEXPLAINED, all_benign
+from validation.diagnosis.constants import FARTHER, SAME_NUMBER
 from validation.diagnosis.evidence import Stage
 from validation.diagnosis.fits.fit import Fit, explains, fit_one, intervals, untold
 from validation.diagnosis.fits.target import Target
@@ -44,10 +45,7 @@ from validation.runs.numbers import remainder_text, significant
 from validation.scenes import features
 from validation.scenes.scene import Scene
 
-SAME_SPLIT = 1e-4  # of a composite scheme
 NAMES = (DISPLACEMENT, PRESSURE)
-PLAIN = 0.3  # relative L2 that one cause leaves, below which no other sign or unit is looked for
-RIVAL = 0.25  # share of DDA's misfit below which another solver is the model
 
 
 @dataclass(frozen=True, eq=False)
@@ -207,7 +205,7 @@ def judged_block(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
         case, verdict = _without_single_rows(case, verdict)
     if not verdict.explains and scene.contact.law == "locked" and scene.time.scheme == "newmark":
         theirs = verdict_of_solvers(scene, [case.reading], rivals_of(scene)) if np.ptp(case.target.steps) == 0 else None
-        if theirs is not None and theirs.explained and theirs.left <= RIVAL * verdict.best.fit.misfit:
+        if theirs is not None and theirs.explained and FARTHER * theirs.left <= verdict.best.fit.misfit:
             return _of_rival(case, theirs)
     if not verdict.explains:
         verdict = twofold(case.target, scene_variant, verdict)
@@ -238,7 +236,7 @@ def _best(cases: Sequence[Case]) -> tuple[Case, Verdict]:
         if verdict.explains and len(case.reading.corrected) == fewest:
             return case, verdict
         is_fewest_judged = any(len(other.reading.corrected) == fewest for other, _ in verdicts)
-        if verdict.best.fit.misfit < PLAIN and is_fewest_judged:
+        if verdict.best.fit.misfit < 1 / FARTHER and is_fewest_judged:
             break
     sound = [pair for pair in verdicts if pair[1].explains]
     return sound[0] if sound else min(verdicts, key=lambda pair: pair[1].best.fit.misfit)
@@ -374,7 +372,7 @@ def _undecided(target: Target, v: Variant, ids: Sequence[str]) -> dict[str, str]
 def _has_second_split(target: Target, v: Variant) -> bool:
     """Whether a composite scheme gives the same rows with another split."""
     other = schemes.companion_split(v)
-    if abs(other - schemes.split_of(v)) < SAME_SPLIT:
+    if abs(other - schemes.split_of(v)) < SAME_NUMBER:
         return False
     return explains(target, replace(v, split=other))
 

@@ -11,10 +11,11 @@ from typing import Any
 
 import numpy as np
 
+from validation.diagnosis.constants import ARITHMETIC, DISCOUNTS, SLIGHT, UNITS
 from validation.diagnosis.fits.fit import NAMED
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.schemes import EXPLICIT, SHARED
-from validation.diagnosis.stepping import UNEQUAL, histories
+from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Variant
 
 
@@ -28,17 +29,17 @@ class Move:
     starts: Sequence[float] = ()  # of the first of them
 
 
-UNITS = (1e-6, 1e-3, 1e3, 1e6)  # factors of data in other units
-BY_HAND = np.geomspace(0.1, 10, 24).tolist()
+MORE_UNITS = (1e-6, *UNITS, 1e6)  # given: factors of data in other units
+FACTORS = np.geomspace(1 / 30, 30.0, 24).tolist()  # to begin from, a third apart: the nearest two are fitted
+SHARES = np.linspace(0.05, 0.95, 19).tolist()  # of what is between nothing and all of it
 STARTS: dict[str, list[float]] = {
-    "by hand": BY_HAND,
-    "factors": [*BY_HAND, *UNITS],
-    "softnesses": [0.02, *np.linspace(-math.log(30), math.log(30), 24).tolist(), *np.log(UNITS).tolist()],
-    "dashpots": np.geomspace(0.01, 5.0, 22).tolist(),  # c / (2 sqrt(k m))
-    "restitutions": [round(0.05 * i, 2) for i in range(21)],
+    "by hand": FACTORS,
+    "factors": [*FACTORS, *MORE_UNITS],
+    "softnesses": [SLIGHT, *np.log([*FACTORS, *MORE_UNITS]).tolist()],
+    "shares": SHARES[::3],
+    "restitutions": SHARES,
+    "discounts": list(DISCOUNTS),
 }
-STIFFNESS_DRAGS = np.array([0.02, 0.2, 1.0])  # steps
-RAMPS = np.array([3.0, 8.0, 20.0])  # steps
 AVERAGE_ACCELERATION: dict[str, Any] = {"alpha": 0.25, "delta": 0.5, "start": "consistent"}
 CONSTANT_ACCELERATION: dict[str, Any] = {"alpha": 0.5, "delta": 1.0, "start": "zero"}
 PLAIN_CONTACT: dict[str, Any] = {
@@ -47,11 +48,10 @@ PLAIN_CONTACT: dict[str, Any] = {
     "band": 0.0,
     "reopening": 0.0,
 }  # of methods with their own force
-UNNAMED = ((0.3, 0.6), (0.4, 0.8), (0.6, 1.1))  # alpha, delta to begin with
-BANDS = np.geomspace(1e-4, 2.0, 44).tolist()  # over the static displacement
-FINE_BANDS = np.geomspace(1e-4, 2.0, 131).tolist()  # between closings of successive steps
+FINE_BANDS = np.geomspace(1e-4, 2.0, 130).tolist()  # over the static displacement; between closings of successive steps
 OPENING_TENSION = "opening-tension"
-REOPENINGS = (0.0, 1e-3, 1.0)  # gap that opens over the penetration that closes; ntdda has 1e-3
+OF_NTDDA = 1e-3  # given: gap that opens over the penetration that closes, in ntdda and its relatives
+REOPENINGS = (0.0, OF_NTDDA, 1.0)  # the same, as programs have it
 TABLE = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
 
 
@@ -60,10 +60,7 @@ def moves(target: Target, scene: Variant) -> list[Move]:
     met = _conditions(target, scene)
     options = _options(target, scene)
     step = np.mean(target.steps)
-    starts_by_name = STARTS | {
-        "stiffness dampings": (step * STIFFNESS_DRAGS).tolist(),
-        "ramps": (step * RAMPS).tolist(),
-    }
+    starts_by_name = STARTS | {"times": (step * np.array(FACTORS)).tolist()}
     candidates = []
     for row in (*TABLE["integrator"], *TABLE["output"], *TABLE["model"], *TABLE["contact"]):
         if not met[row.get("when", "")]:
@@ -78,7 +75,7 @@ def moves(target: Target, scene: Variant) -> list[Move]:
         starts = row.get("starts", [])
         starts = starts_by_name[starts] if isinstance(starts, str) else starts
         candidates += [Move(row["cause"], changes, tuple(row.get("free", [])), starts) for changes in variations]
-    return [*candidates, *dead_bands(target, scene, BANDS)]
+    return [*candidates, *dead_bands(target, scene, FINE_BANDS[::3])]
 
 
 def _conditions(target: Target, scene: Variant) -> dict[str, bool]:
@@ -87,7 +84,7 @@ def _conditions(target: Target, scene: Variant) -> dict[str, bool]:
     Unequal steps, and blocks with a Poisson's ratio on contact that opens, are tried with Newmark's schemes only. A
     history that never pulls is the same with a contact that opens.
     """
-    has_equal_steps = float(np.ptp(target.steps)) <= UNEQUAL * float(target.steps[0])
+    has_equal_steps = float(np.ptp(target.steps)) <= ARITHMETIC * float(target.steps[0])
     has_poisson = bool(target.column.poisson)
     is_newmark = scene.family == "newmark"
     is_pulled = not scene.opens and pulls(target, scene)
@@ -118,8 +115,10 @@ def _options(target: Target, scene: Variant) -> dict[str, list[dict[str, Any]]]:
     scene_pair = (scene.alpha, scene.delta) if scene.family == "newmark" else None
     scene_scheme = {"alpha": scene.alpha, "delta": scene.delta, "start": scene.start}
     named = [{"alpha": a, "delta": d, "family": "newmark"} for a, d in NAMED.values() if (a, d) != scene_pair]
-    pairs = [*([scene_pair] if scene_pair else []), *UNNAMED]
     other_start = "zero" if scene.start == "consistent" else "consistent"
+    pairs = dict.fromkeys(
+        [*([scene_pair] if scene_pair else []), NAMED["average acceleration"], NAMED["constant acceleration"]]
+    )
     of_contact = [*([scene_scheme] if scene_pair else []), AVERAGE_ACCELERATION, CONSTANT_ACCELERATION]
     return {
         "start": [{"start": scene.start}, {"start": other_start}],
@@ -163,4 +162,4 @@ def dead_bands(target: Target, scene: Variant, shares: Sequence[float]) -> Itera
 def pulls(target: Target, variant: Variant) -> bool:
     """Whether the contact of a variant is in tension in some step, if it carries any."""
     pressure = histories(target.column, [variant], target.steps).pressure[:, 0]
-    return bool(np.any(pressure < -1e-9 * np.max(np.abs(pressure))))
+    return bool(np.any(pressure < -ARITHMETIC * np.max(np.abs(pressure))))

@@ -13,14 +13,15 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
+from validation.diagnosis.constants import UNBOUNDED
 from validation.scenes import features
 from validation.scenes.scene import Scene
 
 Values = dict[str, Any]
 TABLE = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
 Change = TypeVar("Change")  # what a candidate gives
-AVERAGE: Values = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}
-MORE_BLOCKS = 4
+AVERAGE: Values = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}  # given
+MORE_BLOCKS = 4  # times as many of a column in an accurate run
 EVERYWHERE, WITHOUT_JOINT = "everywhere", "without a joint"  # of a column's contacts
 
 
@@ -219,9 +220,6 @@ def _impedance(scene: Scene, factor: float) -> dict[str, Any]:
     return {"column.base_density": base["base_density"] * (factor if "base_speed" in base else factor**2)}
 
 
-GLUED = 89.0  # deg: no block slips on such friction
-
-
 def laws(scene: Scene) -> Iterator[CandidateChange[Values]]:
     """Yield the laws of contact that a program may have in place of a scene's, and what it may have forgotten."""
     if features.ROTATION in features.of(scene):
@@ -236,4 +234,4 @@ def laws(scene: Scene) -> Iterator[CandidateChange[Values]]:
         yield fixed("contact-locked", "the contact pulls, where the scene's opens", {"contact.law": "locked"})
     if scene.contact.friction:
         yield fixed("no-friction", "there is no friction", {"contact.friction": 0.0})
-        yield fixed("no-slip", "the contact does not slip", {"contact.friction": GLUED})
+        yield fixed("no-slip", "the contact does not slip", {"contact.friction": math.degrees(math.atan(UNBOUNDED))})

@@ -14,24 +14,19 @@ from typing import Generic, TypeVar
 
 import numpy as np
 
+from validation.diagnosis.constants import ARITHMETIC, CHANGE, FIRST_ROUNDS, SLIGHT, TWICE, UNITS
 from validation.diagnosis.fits.bar import norm
 from validation.diagnosis.fits.fit import NAMED
 from validation.diagnosis.hooks import DiagnosisHooks
 from validation.diagnosis.numbers import CandidateChange, Change, Values, fixed
 from validation.diagnosis.sentences import scheme_words
 from validation.runs.history import Array
+from validation.runs.numbers import ROUNDING
 from validation.scenes.scene import Scene
 
 Explanation = TypeVar("Explanation")
 Residual = Callable[[float], Array]  # of a candidate's u: what it leaves of a history
-UNITS = (1e-3, 1e3)  # factors of a datum in other units: mm, g, kPa, or MPa for Pa
 IN_UNITS = frozenset({"density-factor", "young-factor", "springs-factor", "load-factor"})
-NEAR_UNIT = 0.02  # relative, of a fitted factor that is said to be one of units: the rest is the fit's
-SPAN = 0.05  # of u, that a step of a fit is measured in
-BESIDE_NOTHING = 1e-12  # u that a step of the fit has brought to zero but for rounding
-TOLD_APART = 1.5e-8  # step of a derivative there, the root of a rounding
-FIRST_ROUNDS = 3  # after which a fit that gets nowhere is given up
-HALVED = 0.5  # of the remainder at the start
 
 
 def of_schemes(scene: Scene) -> Iterator[CandidateChange[Values]]:
@@ -65,7 +60,7 @@ def of_numbers(scene: Scene, factors: Sequence[float], units: bool = True) -> It
 
 def in_units(factor: float) -> str:
     """Return what a factor is by which units go wrong, nothing for another one."""
-    return ", other units" if any(math.isclose(factor, unit, rel_tol=NEAR_UNIT) for unit in UNITS) else ""
+    return ", other units" if any(math.isclose(factor, unit, rel_tol=SLIGHT) for unit in UNITS) else ""
 
 
 def of_discount(scene: Scene, discounts: Sequence[float]) -> CandidateChange[Values]:
@@ -120,7 +115,7 @@ def fitted(
     candidate: Fitted[Change],
     rounds: int,
     nudge: float,
-    settled: float = 1e-8,
+    settled: float = ARITHMETIC,
     hopeless: float = math.inf,
 ) -> Fitted[Change]:
     """Return a candidate at the number that comes nearest, as it is where it has none.
@@ -133,7 +128,7 @@ def fitted(
         return replace(candidate, remainder=norm(residual(0.0)))
     first = _least_squares(residual, candidate, min(rounds, FIRST_ROUNDS), nudge, settled)
     if rounds <= FIRST_ROUNDS or (
-        min(first.remainder, candidate.remainder) > hopeless and first.remainder > HALVED * norm(residual(candidate.u))
+        min(first.remainder, candidate.remainder) > hopeless and TWICE * first.remainder > norm(residual(candidate.u))
     ):
         return first
     return _least_squares(residual, first, rounds - FIRST_ROUNDS, nudge, settled)
@@ -147,16 +142,16 @@ def _least_squares(
     known = lru_cache(maxsize=4)(residual)
 
     def slope(u: Array) -> Array:
-        """Return the derivative by a step relative to u, beside zero by one that a double can tell."""
+        """Return the derivative by a step relative to u, beside zero to the span."""
         x = float(u[0])
-        step = nudge * x if abs(x) > BESIDE_NOTHING else TOLD_APART
+        step = nudge * (x if abs(x) > ROUNDING else CHANGE)
         return np.asarray((known(x + step) - known(x)) / step)[:, None]
 
     solution = least_squares(
         lambda u: known(float(u[0])),
         [candidate.u],
         jac=slope,
-        x_scale=SPAN,
+        x_scale=CHANGE,
         max_nfev=rounds,
         xtol=settled,
         ftol=settled,

@@ -15,8 +15,10 @@ from validation.diagnosis import evidence
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.beside import Candidate, RunExplanation, RunVerdict, SceneSearch, answer_of, verdict_of
 from validation.diagnosis.causes import BENIGN_COMPLIANCE, words_of
+from validation.diagnosis.constants import CLEARLY, DISCOUNTS, SLIGHT
 from validation.diagnosis.evidence import Departure
 from validation.diagnosis.fits.bar import Bar
+from validation.diagnosis.moves import FACTORS
 from validation.diagnosis.numbers import Values
 from validation.diagnosis.one_change import Fitted, of_discount, of_numbers, of_schemes
 from validation.diagnosis.reading import Foreign, steppings
@@ -29,13 +31,10 @@ from validation.scenes.scene import Scene
 from validation.solvers.registry import get_solver
 
 CANDIDATES = {"springs-factor", "density-factor", "young-factor", "load-factor", "gg"}  # numbers that are tried
-DISCOUNTS = (0.998, 0.99, 0.97, 0.94, 0.9, 0.8)
-STARTS = tuple(float(f) for f in np.geomspace(0.25, 4.0, 17))
-FEW = 4  # of a slow solver every so many of the starts
+STARTS = tuple(FACTORS[len(FACTORS) // 4 : -len(FACTORS) // 4])  # to begin from: the middle half of those of a block
+FEW = 4  # of a slow solver every so many of the starts: a factor of three apart
 COARSE = 8  # elements a side of the mesh that finds candidates for a finer one
-BEYOND_MESH = 30.0  # times what the coarse mesh leaves of the scene's run, that it may leave of another number's
 MESH = 5e-3  # relative L2 that a coarse mesh leaves beside the exact bar: eight linear elements a side at 0.5 ms
-SHARE = 0.05  # of what is to be explained, at most, that it may leave
 DDA = "dda"
 RIVALS = ("bar", "continuum", "fem")
 EXACT = {"bar": " (the exact bar, which fine finite elements converge to)"}
@@ -77,7 +76,7 @@ class SolverSearch(SceneSearch):
         coarse.changes = self.changes  # of numbers that have nothing to do with a mesh
         sizes = np.maximum(np.linalg.norm(self.scene_run, axis=1), np.finfo(float).tiny)
         error = float(np.max(np.linalg.norm(coarse.scene_run - self.scene_run, axis=1) / sizes))
-        near = [each for each in coarse.explanations() if each.explains or each.left <= BEYOND_MESH * error]
+        near = [each for each in coarse.explanations() if each.explains or each.left <= CLEARLY * error]
         return super().explanations([each.candidate for each in near]) if near else []
 
     def solved(self, values: Values, steps: int, is_shifted: bool) -> Array | None:
@@ -95,7 +94,7 @@ class SolverSearch(SceneSearch):
     def is_noise(self, columns: Array) -> bool:
         """Whether columns leave noise of a linear motion, or beside an exact solution what a mesh does."""
         is_exact = self.model and not self.solver.meshed
-        least = min(MESH, SHARE * self.left(self.scene_run)) if is_exact else 0.0
+        least = min(MESH, SLIGHT * self.left(self.scene_run)) if is_exact else 0.0
         if self.left(columns) <= least:
             return True
         if self.rows < self.recorded.shape[1]:  # a run without bounds

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from validation.diagnosis.constants import SEEN
 from validation.diagnosis.fits.bar import last_digits
 from validation.errors import InputError
 from validation.metrics.values import largest
@@ -18,16 +19,15 @@ from validation.runs.columns import unit_of
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.runs.tables import Row, number, read_text, rows_of
 from validation.runs.units import factors_of, recognised, theirs_of
+from validation.solvers.history_table import LARGEST_FILE
 
 SIDEWAYS = "horizontal_displacement"  # m, towards +x
 OURS = ("time", DISPLACEMENT, PRESSURE, SIDEWAYS)
 FREE = (PRESSURE, SIDEWAYS)  # columns that a file need not have
-NTDDA_COLUMNS = 9  # step, time, dt, x, y, cumulative displacement, vx, vy, speed
-LEAST_ROWS = 4
-LARGEST = 1e100  # the squares of larger numbers overflow
-SAME_STEP = 1e-3  # relative; times are often printed with four digits
+NTDDA_COLUMNS = 9  # given: step, time, dt, x, y, cumulative displacement, vx, vy, speed
+LEAST_ROWS = 4  # of a history that is judged
+LARGEST = 1e100  # given: the squares of larger numbers overflow
 MOST_STEPS = 10_000  # every explanation steps through all of them: a minute or two, and 200 MB
-LARGEST_FILE = 100_000_000  # bytes: a thousand points of so many rows
 
 
 @dataclass(frozen=True, eq=False)
@@ -275,7 +275,7 @@ def steppings(foreign: Foreign, step: float) -> list[Stepping]:
         inner = steppings(Foreign(foreign.time / slip, foreign.displacement), step)[0]
         note = f"the times are {slip:g} times those of the scene: a unit error"
         return [Stepping(inner.steps, inner.rows, note, slip)]
-    if foreign.steps is not None and np.ptp(foreign.steps) > SAME_STEP * usual:
+    if foreign.steps is not None and np.ptp(foreign.steps) > SEEN * usual:
         return [Stepping(foreign.steps, every, "the times are not uniform: the program changed its step")]
     multiples = _multiples(gaps, step)
     if multiples and len(multiples[0].rows) == len(multiples[0].steps):
@@ -287,11 +287,11 @@ def _multiples(gaps: Array, step: float) -> list[Stepping]:
     """Return the reading that rows show some of the scene's steps, if the times allow it."""
     ends = np.cumsum(gaps) / step
     whole = np.rint(ends)
-    near = np.all(np.abs(np.diff(ends, prepend=0.0) - np.diff(whole, prepend=0.0)) < SAME_STEP * (1 + gaps / step))
+    near = np.all(np.abs(np.diff(ends, prepend=0.0) - np.diff(whole, prepend=0.0)) < SEEN * (1 + gaps / step))
     if not near or whole[0] < 1 or np.any(np.diff(whole) < 1):
         return []
     if whole[-1] > MOST_STEPS:
-        if np.ptp(gaps) <= SAME_STEP * gaps[0]:
+        if np.ptp(gaps) <= SEEN * gaps[0]:
             return []  # the program's own steps, longer than the scene's
         raise InputError(
             f"must end within {MOST_STEPS} steps of {step:g} s", field="time", value=f"step {whole[-1]:.0f}"
@@ -309,12 +309,12 @@ def _multiples(gaps: Array, step: float) -> list[Stepping]:
 
 def _own_steps(gaps: Array, usual: float, step: float) -> list[Stepping]:
     """Return the reading that every row is a step of the program's own."""
-    if np.all(np.abs(gaps - usual) <= SAME_STEP * usual):
+    if np.all(np.abs(gaps - usual) <= SEEN * usual):
         mean = float(np.mean(gaps))
         note = f"the program's step is {mean:g} s, the scene's {step:g} s: compared at the program's step"
         return [Stepping(np.full(len(gaps), mean), np.arange(len(gaps)), note)]
     first = gaps[0] / usual
-    if np.all(np.abs(gaps[1:] - usual) <= SAME_STEP * usual) and first > 1 and abs(first - round(first)) < SAME_STEP:
+    if np.all(np.abs(gaps[1:] - usual) <= SEEN * usual) and first > 1 and abs(first - round(first)) < SEEN:
         inner = _multiples(gaps, usual)
         return [Stepping(s.steps, s.rows, f"the rows begin at step {s.rows[0] + 1}") for s in inner]
     return [Stepping(gaps, np.arange(len(gaps)), "the times are not uniform: each row is taken as one step")]
@@ -323,4 +323,4 @@ def _own_steps(gaps: Array, usual: float, step: float) -> list[Stepping]:
 def _unit_slip(ratio: float) -> float | None:
     """Return the power of a thousand that a ratio is, or None."""
     power = round(math.log10(ratio) / 3) * 3
-    return 10.0**power if power and abs(ratio / 10.0**power - 1) < SAME_STEP else None
+    return 10.0**power if power and abs(ratio / 10.0**power - 1) < SEEN else None

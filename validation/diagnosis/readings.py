@@ -9,6 +9,7 @@ from itertools import product
 
 import numpy as np
 
+from validation.diagnosis.constants import UNBOUNDED, UNIT_POWERS
 from validation.diagnosis.fits.bar import last_digits
 from validation.diagnosis.reading import SIDEWAYS, Foreign, Stepping, steppings
 from validation.diagnosis.stepping import histories
@@ -22,16 +23,13 @@ from validation.solvers.contract import Role
 from validation.solvers.registry import by_role, get_solver
 
 POSITIVE = {DISPLACEMENT: "upwards", PRESSURE: "compression"}  # what is positive in a column
-FURTHEST = 1e3  # times its first row, beyond which the history of a block is unstable
-UNIT_POWERS = (-6, -3, -2, 2, 3, 6)  # of ten, by which a unit may be off
 FIELDS = {  # of a column and its rounding in `Foreign`
     DISPLACEMENT: ("displacement", "rounding"),
     PRESSURE: ("pressure", "pressure_rounding"),
     SIDEWAYS: ("sideways", "sideways_rounding"),
 }
-# powers of ten: swapped columns are nearer than NEAR to each other's size, units allowed for, and FAR from their own
-NEAR = 3.5
-FAR = 4.5
+NEAR_POWER = 0.5  # given: of the exponent: the nearest power of ten
+NEAR = 3.5  # powers of ten, a thousand and a half: swapped columns are so near to each other's size, not to their own
 
 
 @dataclass(frozen=True)
@@ -88,7 +86,7 @@ def has_swapped_columns(scene: Scene, foreign: Foreign) -> bool:
         expected = np.log10([largest(run.displacement), largest(run.contact_pressure)])
         recorded = np.log10([largest(foreign.displacement), largest(foreign.pressure)])
         near = np.abs(recorded[::-1] - expected) < NEAR
-        far = np.abs(recorded - expected) > FAR
+        far = np.abs(recorded - expected) > NEAR
     return bool(np.all(near & far))
 
 
@@ -139,7 +137,7 @@ def readings_of(scene: Scene, column: Rectangle, scene_variant: Variant, foreign
 
 
 def slips(
-    foreign: Foreign, stepping: Stepping, reference: Array, contact: Array, furthest: float = FURTHEST
+    foreign: Foreign, stepping: Stepping, reference: Array, contact: Array, furthest: float = UNBOUNDED
 ) -> list[Reading]:
     """Return the readings without slips of sign and unit, as sizes beside the scene's own history suggest.
 
@@ -190,5 +188,5 @@ def _factors(values: Array, reference: Array, furthest: float) -> list[tuple[flo
         bounded = np.clip(np.nan_to_num(reference), -most, most)
     sign = -1.0 if float(values @ bounded) < 0 else 1.0
     ratio = math.log10(largest(values) / (largest(bounded) or 1.0) or 1.0)
-    near = [10.0**power for power in UNIT_POWERS if abs(ratio - power) < 0.5]
+    near = [10.0**power for power in UNIT_POWERS if abs(ratio - power) < NEAR_POWER]
     return [(turn * sign, factor) for turn in (1.0, -1.0) for factor in (*near, 1.0)]

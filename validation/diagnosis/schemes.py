@@ -10,12 +10,13 @@ import math
 from typing import Any
 
 from validation.diagnosis.variant import Family, Variant
+from validation.metrics.contact import AGREED
 from validation.theory import stages as tables
 from validation.theory.stages import Stage, Stages
 
-LARGEST_ALPHA_F = 1 / 3  # of HHT: beyond it the spectral radius at high frequency rises again
+LARGEST_ALPHA_F = 1 / 3  # given: of HHT: beyond it the spectral radius at high frequency rises again
 EXPLICIT: tuple[Family, ...] = ("leapfrog", "symplectic-euler")
-SHARED: dict[Family, tuple[float, ...]] = {  # numbers at which a family is a scheme of another name
+SHARED: dict[Family, tuple[float, ...]] = {  # given: numbers at which a family is a scheme of another name
     "hht": (0.0, 1 / 3),  # average acceleration; Chung and Hulbert's at rho_inf = 1/2
     "chung-hulbert": (0.0, 0.5, 1.0),  # WBZ 0; HHT 1/3; average acceleration
     "wbz": (0.0, 1.0),
@@ -87,20 +88,19 @@ def other_names(v: Variant) -> str:
         known = NEWMARK_NAMES.get((v.alpha, v.delta, v.start), "")
         return known if v.gg == 1 or v.alpha == 0.25 else ""
     for family, spectral, split, words in FAMILY_NAMES:
-        same_split = family != "composite" or math.isclose(split_of(v), split, abs_tol=SAME_NUMBER)
-        if v.family == family and math.isclose(v.spectral, spectral, abs_tol=SAME_NUMBER) and same_split:
+        same_split = family != "composite" or math.isclose(split_of(v), split, abs_tol=AGREED)
+        if v.family == family and math.isclose(v.spectral, spectral, abs_tol=AGREED) and same_split:
             return words
     if v.family == "leapfrog" and v.gg == 1:
         return ": central differences, Newmark (0, 1/2)"
     return ""
 
 
-SAME_NUMBER = 1e-6
 NEWMARK_NAMES = {
     (0.25, 0.5, "consistent"): ": the trapezoidal and the midpoint rule",
     (1.0, 1.5, "zero"): ": implicit Euler",
 }
-FAMILY_NAMES: tuple[tuple[Family, float, float, str], ...] = (  # rho_inf, alpha_f or theta; split
+FAMILY_NAMES: tuple[tuple[Family, float, float, str], ...] = (  # given: rho_inf, alpha_f or theta; split
     ("chung-hulbert", 0.0, 0.0, ": WBZ at rho_inf = 0, and Houbolt's recursion but for its start"),
     ("chung-hulbert", 0.5, 0.0, ": HHT at alpha_f = 1/3"),
     ("composite", 0.0, 2 - math.sqrt(2), ": TR-BDF2"),

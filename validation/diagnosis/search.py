@@ -23,45 +23,46 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from validation.diagnosis.causes import BAND_FIELDS, CAUSES, CONTACT_METHODS, benign_springs
+from validation.diagnosis.constants import (
+    ARITHMETIC,
+    CLEARLY,
+    FIRST_ROUNDS,
+    MOST_ALIKE,
+    ROUNDS,
+    SEEN,
+    SLIGHT,
+    TWICE,
+    WINDOW,
+)
+from validation.diagnosis.fits.bar import LONGEST
 from validation.diagnosis.fits.fit import Fit, changed, fit, fit_one, intervals, is_factor
 from validation.diagnosis.fits.target import Target
-from validation.diagnosis.moves import FINE_BANDS, Move, dead_bands, moves
+from validation.diagnosis.moves import FINE_BANDS, OF_NTDDA, Move, dead_bands, moves
 from validation.diagnosis.schemes import SHARED
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Variant
+from validation.metrics.contact import AGREED
 from validation.runs.history import Array
 
-PERIODS = 5.0  # of the first mode, over which a fit does not go astray
-SHORTEST, COARSE = 30, 500  # steps of the first fits
+PERIODS = 5.0  # of the first mode, over which a fit does not go astray: a frequency off by a tenth is half a period off
 STRETCH = 5  # of the fitted part of a long history, from fit to fit
 KEPT = 28  # candidates that are fitted over more of the history
-FIRST_ROUNDS, ROUNDS = 5, 12  # of the fits: of all candidates, of those that are left
-MANY = 140  # candidates that are fitted further
 
 Start = tuple[tuple[Move, ...], Variant, tuple[str, ...]]  # causes, where their fit begins, its free numbers
 CLEAR = 10.0  # of the information criterion: odds of 150 to 1
 RARE = 14.0  # of the same, for a change that people rarely make: a thousand to one
-STANDS_OUT = 10.0  # times more that the scene must leave for each change: noise hides no other one so large
 AROUND = 5e-5  # relative L2 that moving geometry and a base leave, which every program treats in its own way
 AROUND_OPEN = 3e-4  # the same where the contact opens: landings are late or early by what the base leaves
-NEGLIGIBLE, NEGLIGIBLE_SHARE = 1e-6, 1e-3  # relative L2 of rounded constants, and share of the difference
-WITHOUT_IT = 2.0  # times more that a fit leaves without what surrounds the block, or a number, if that is there
-SHARE = 0.02  # of what is to be explained, at most, that they may leave
 FACTORS = ("density-factor", "young-factor", "side-factor", "springs-factor", "load-factor")
 SURROUNDINGS = ("springs-factor", "own-weight", "geometry-updated")
-MOST_ALIKE = 5  # explanations that are told where the file cannot tell them apart
 SCHEMES = [  # causes that are a time scheme: of several names the first is chosen
     *("start", "velocity", "substeps", "leapfrog", "scheme", "generalised-alpha", "hht", "wbz", "theta", "composite"),
     *("symplectic-euler", "exact-in-time"),
 ]
-PROBES = (0.4, 1.0, 2.5)  # time steps over the history's, at which two names are seen to be one scheme
-PROBED = 40  # steps of such a run
-SAME_PROGRAM = 1e-8  # relative difference, of roundings
-OTHER_PROGRAMS = 1e-3  # of ntdda and its relatives, whose other habits stand beside it
+PROBES = (0.5, 2.0)  # time steps over the history's, at which two names are seen to be one scheme: half and double
 RAYLEIGH = ("viscous-damping", "stiffness-damping")  # C = a0 M + a1 K, which programs have together
 BASES = ((5.0, 1.0), (5.0, 1.25), (20.0, 1.0))  # to begin with: mass of a base over the block's, change of softness
-MANIFOLD = 10.0  # times a factor that give the same rows: it is large or small, and no number
-NEUTRAL = Variant(0.5, 1.0, 1.0)  # numbers of a variant by which nothing is changed
+NEUTRAL = Variant(0.5, 1.0, 1.0)  # given: numbers of a variant by which nothing is changed
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,9 +87,9 @@ def fitted(target: Target, scene: Variant, combos: Sequence[tuple[Move, ...]]) -
     # of a mass on springs as soft as block and springs together
     c = target.column
     period = 2 * math.pi * math.sqrt(c.density * c.width * c.height * abs(c.static) / abs(c.force or 1.0))
-    steps = min(max(SHORTEST, math.ceil(PERIODS * period / float(np.mean(target.steps)))), COARSE)
+    steps = min(math.ceil(PERIODS * period / float(np.mean(target.steps))), LONGEST)
     part = target.until(steps) if steps < n else target
-    explanations = _further(part, _fits(part, _begun(part, scene, combos), FIRST_ROUNDS)[:MANY])
+    explanations = _further(part, _fits(part, _begun(part, scene, combos), FIRST_ROUNDS)[: STRETCH * KEPT])
     while steps < n:
         steps *= STRETCH
         part = target.until(min(steps, n))
@@ -276,12 +277,12 @@ def relatives(target: Target, scene: Variant, verdict: Verdict) -> list[Explanat
     run = histories(target.column, [best.fit.variant], target.steps)
     both = np.array([run.displacement[target.rows, 0], run.pressure[target.rows, 0]])
     clean = Target(target.column, target.steps, target.rows, both[: len(target.recorded)])
-    same = [f for f in _further(clean, verdict.others) if f.fit.misfit <= SAME_PROGRAM]
+    same = [f for f in _further(clean, verdict.others) if f.fit.misfit <= ARITHMETIC]
     if set(best.ids) <= {*FACTORS, "height-factor"}:  # a height by f is a density by f and a modulus by 1/f
         factors = {move.id: move for move in moves(target, scene) if move.id in FACTORS}
         pairs = [(factors[one], factors[two]) for one, two in itertools.combinations(factors, 2)]
         pairs = [pair for pair in pairs if set(best.ids).isdisjoint({move.id for move in pair})]
-        same += [f for f in fitted(clean, scene, pairs) if f.fit.misfit <= SAME_PROGRAM]
+        same += [f for f in fitted(clean, scene, pairs) if f.fit.misfit <= ARITHMETIC]
     distinct = {f.ids: f for f in reversed(same) if is_determined(clean, fit_one(clean, scene), f)}
     return list(distinct.values())[:MOST_ALIKE]
 
@@ -301,11 +302,11 @@ def with_same_rows(target: Target, scene: Variant, verdict: Verdict) -> Verdict:
 def same_program(target: Target, one: Variant, other: Variant) -> bool:
     """Whether two variants give the same rows at other time steps, too."""
     for longer in PROBES:
-        steps = np.full(PROBED, longer * float(target.steps[0]))
+        steps = np.full(WINDOW, longer * float(target.steps[0]))
         run = histories(target.column, [one, other], steps).displacement
         with np.errstate(all="ignore"):
             apart = np.abs(run[:, 0] - run[:, 1])
-            if not np.all(apart <= SAME_PROGRAM * np.max(np.abs(run), axis=1).max()):
+            if not np.all(apart <= ARITHMETIC * np.max(np.abs(run), axis=1).max()):
                 return False
     return True
 
@@ -317,10 +318,10 @@ def accepted(target: Target, scene_fit: Fit, candidate: Fit) -> bool:
         return True
     # rounded constants leave that much, and passes of an augmented Lagrangian; other schemes come as near by chance
     is_usual = (v.family, v.contact) == (scene_fit.variant.family, scene_fit.variant.contact) or v.contact == "rigid"
-    if is_usual and _is_negligible(target, candidate, min(NEGLIGIBLE, scene_fit.misfit * NEGLIGIBLE_SHARE)):
+    if is_usual and _is_negligible(target, candidate, min(AGREED, scene_fit.misfit * SEEN)):
         return True
     around = AROUND_OPEN if v.opens else AROUND
-    loose = min(math.hypot(around, target.floor), SHARE * scene_fit.misfit)
+    loose = min(math.hypot(around, target.floor), SLIGHT * scene_fit.misfit)
     return candidate.misfit <= loose and _surrounded(target, candidate)
 
 
@@ -340,7 +341,7 @@ def _surrounded(target: Target, candidate: Fit) -> bool:
     if not (v.updated or base):
         return False
     without = replace(v, updated=False, base=0.0, softness=0.0 if base else v.softness)
-    return fit_one(target, without).misfit > WITHOUT_IT * candidate.misfit
+    return fit_one(target, without).misfit > TWICE * candidate.misfit
 
 
 def is_determined(target: Target, scene_fit: Fit, explanation: Explanation) -> bool:
@@ -364,19 +365,19 @@ def is_determined(target: Target, scene_fit: Fit, explanation: Explanation) -> b
         else:
             special_cases.append({name: getattr(NEUTRAL, name)})
         if is_factor(name):
-            many_times += [{name: getattr(v, name) * MANIFOLD}, {name: getattr(v, name) / MANIFOLD}]
+            many_times += [{name: getattr(v, name) * CLEARLY}, {name: getattr(v, name) / CLEARLY}]
         elif name == "softness":
-            many_times += [{name: v.softness + math.log(MANIFOLD)}, {name: v.softness - math.log(MANIFOLD)}]
+            many_times += [{name: v.softness + math.log(CLEARLY)}, {name: v.softness - math.log(CLEARLY)}]
     if not all(math.isfinite(interval.half_width) for interval in intervals(solution).values()):
         return False
     specials = fit(target, [(changed(v, case), ()) for case in (*special_cases, *many_times)])
     # beside a stiffness that is hardly felt the other numbers are hardly others
-    near = [each.misfit <= SHARE * scene_fit.misfit for each in specials[len(special_cases) :]]
+    near = [each.misfit <= SLIGHT * scene_fit.misfit for each in specials[len(special_cases) :]]
     starts = [(changed(v, case), _without(solution.free, case)) for case in itertools.compress(many_times, near)]
     # not by the tolerance of a base: a heavy one hardly feels its springs, and digits tell them
     leaves_digits = [target.explained(target.inner(f.residual, f.variant)) for f in fit(target, starts, ROUNDS)]
     of_none = specials[: len(special_cases)]
-    least = max(NEGLIGIBLE, WITHOUT_IT * solution.misfit)
+    least = TWICE * max(AGREED, solution.misfit)
     is_none = any(each.misfit <= least or accepted(target, scene_fit, each) for each in of_none)
     return not (is_none or any(leaves_digits))
 
@@ -394,8 +395,8 @@ def _stands_out(target: Target, scene_fit: Fit, explanation: Explanation) -> boo
     many = any(CAUSES[name].family or name in CONTACT_METHODS or name == "scheme" for name in explanation.ids)
     faults = [move for move in explanation.moves if move.id not in SURROUNDINGS]
     changes = max(1, len(faults), sum(len(move.free) for move in faults)) * (1 + many)
-    most = SHARE if len(explanation.moves) > 1 else 1.0
-    return explanation.fit.misfit <= min(most, STANDS_OUT**-changes) * scene_fit.misfit
+    most = SLIGHT if len(explanation.moves) > 1 else 1.0
+    return explanation.fit.misfit <= min(most, CLEARLY**-changes) * scene_fit.misfit
 
 
 # ---- the search ----
@@ -404,7 +405,7 @@ def _stands_out(target: Target, scene_fit: Fit, explanation: Explanation) -> boo
 def as_it_is(target: Target, scene: Variant) -> Verdict:
     """Return whether the scene's own scheme, nothing added, explains a history."""
     scene_fit = fit_one(target, scene)
-    is_same = target.explained(scene_fit.residual) or _is_negligible(target, scene_fit, NEGLIGIBLE)
+    is_same = target.explained(scene_fit.residual) or _is_negligible(target, scene_fit, AGREED)
     return Verdict(scene_fit, Explanation((), scene_fit), is_same, reached=is_same)
 
 
@@ -441,7 +442,7 @@ def twofold(target: Target, scene: Variant, before: Verdict) -> Verdict:
     if verdict.reached:
         return verdict
     faults = [move for move in few if move.id not in SURROUNDINGS]
-    faults += [move for move in every if move.changes.get("reopening") == OTHER_PROGRAMS]
+    faults += [move for move in every if move.changes.get("reopening") == OF_NTDDA]
     parts = _surroundings(target, scene)
     around = [tuple(combo) for size in (1, 2, 3) for combo in itertools.combinations(parts, size)]
     beside = fitted(target, scene, [(move, *parts) for move in faults if _together((move, *parts))])[:MOST_ALIKE]
@@ -478,7 +479,7 @@ def _heavy(target: Target, explanations: Sequence[Explanation]) -> list[Explanat
         v = f.fit.variant
         if v.softness > 0 and "softness" in f.fit.free:
             starts = [(replace(v, base=m, softness=v.softness * soft), (*f.fit.free, "base")) for m, soft in BASES]
-            more += [Explanation(f.moves, heavy) for heavy in fit(target, starts, rounds=12)]
+            more += [Explanation(f.moves, heavy) for heavy in fit(target, starts)]
     return more
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from validation.diagnosis.causes import CAUSES
+from validation.diagnosis.constants import TWICE
 from validation.diagnosis.fits.fit import named
 from validation.diagnosis.schemes import EXPLICIT, FAMILIES, split_of
 from validation.diagnosis.variant import Variant
@@ -15,8 +16,6 @@ from validation.runs.numbers import ROUNDING, remainder_text
 if TYPE_CHECKING:
     from validation.diagnosis.evidence import Departure, Stage
     from validation.diagnosis.fits.fit import Interval
-
-NEAR = 0.5  # share of the difference: what leaves more is near to nothing
 
 
 def scheme_words(alpha: float | None, delta: float | None, gg: float | None) -> str:
@@ -113,7 +112,7 @@ def not_explained(
         further = f"to tell them apart, try {subject.alike[0]['further_scene']}"
         return f"{start}{words} give the same rows within digits and noise; {further}."
     near = "nothing is near"
-    if nearest and nearest["causes"] and unexplained <= NEAR:
+    if nearest and nearest["causes"] and TWICE * unexplained <= 1:
         near = f"nearest is {_family(nearest)}, {remainder_text(unexplained, 2)} % left"
     right = _names(stages, True)
     wrong = _names(stages, False)

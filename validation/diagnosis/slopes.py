@@ -20,19 +20,33 @@ import numpy as np
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.beside import Candidate, RunExplanation, RunVerdict, SceneSearch, answer_of, rank, verdict_of
 from validation.diagnosis.causes import BENIGN_COMPLIANCE, round_factor, words_of
+from validation.diagnosis.constants import (
+    ARITHMETIC,
+    CHANGE,
+    DISCOUNTS,
+    FAINT,
+    FARTHER,
+    ORDER,
+    ROUNDS,
+    SEEN,
+    SLIGHT,
+    UNIT_POWERS,
+    WINDOW,
+)
 from validation.diagnosis.evidence import Departure, Stage
 from validation.diagnosis.fits.fit import NORMAL_95
+from validation.diagnosis.moves import OF_NTDDA
 from validation.diagnosis.numbers import CandidateChange, Values, fixed, laws
 from validation.diagnosis.one_change import Fitted, of_discount, of_numbers, of_schemes
-from validation.diagnosis.other_solvers import DDA
+from validation.diagnosis.other_solvers import DDA, STARTS
 from validation.diagnosis.reading import SIDEWAYS, Foreign, Stepping, steppings
-from validation.diagnosis.readings import Reading, Slip, remedy_of, without_slips
+from validation.diagnosis.readings import NEAR_POWER, Reading, Slip, remedy_of, without_slips
 from validation.diagnosis.variant import GRAVITY, upright
 from validation.errors import InputError
 from validation.metrics.contact import SHIFT
 from validation.metrics.values import largest
 from validation.runs.history import DISPLACEMENT, Array
-from validation.runs.numbers import share_text
+from validation.runs.numbers import ROUNDING, share_text
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.dda import model_of
@@ -44,29 +58,18 @@ KNOWN = frozenset(
     {features.FRICTION, features.LAGGED, features.SLOPE, features.WEIGHT, features.OFF_CENTRE}
     | {features.UNILATERAL, features.DEAD_BAND}
 )
-UNIT_POWERS = (-6, -3, 3, 6)  # of ten, by which a unit of length may be off
-NEAR_POWER = 0.5  # of the exponent: creep and slides differ by a factor of a few between programs
-UNIFORM = 1e-3  # relative; times are often printed with four digits
-FIRST = 1 / 50  # share of the rows in which a column goes with its load
 # of habits
 STAGES = (8, 24, 60, 150)  # steps that numbers are fitted to; in the first no corner has come back to the base
-WEIGHTS = (0.0, 1.0)  # to begin from
-SOFTNESSES = (0.0, *np.linspace(-1.5, 1.5, 13).tolist())  # ln, to begin from
-WHOLE, NONE = 0.05, 0.02  # how near a fitted weight is to the block's own, or to none
-YIELDS = 5e-4  # share of the static displacement, that counts as a base
-BANDS = (0.1, 10.0, 16)  # dead bands that are tried first, over the mean penetration
-BAND_ROUNDS = 4  # times that as many are tried between the neighbours of the best: to a thousandth
-LANDING = 8  # share of the rows up to the first that departs: a corner is open in it if a landing is the reason
-LANDED = 1e-3  # of the largest displacement: what a landing a step late leaves at least
-REOPENS = 1e-3  # gap at which a contact with a dead band opens, over the band, as in ntdda
-BAND_GAIN = 3.0  # times less that a dead band must leave, to be there
-ROUNDED = 1e-7  # of the largest displacement, that the best counts as leaving at least
-BESIDE_BASE = 0.03  # of what the other law leaves, and
-AT_MOST = 0.01  # of the largest displacement: what a base may leave that has a mass of its own
+WEIGHTS = (0.0, 1.0)  # given: to begin from: none, or the block's own
+SOFTNESSES = (0.0, *map(math.log, STARTS))  # to begin from
+BANDS = (0.1, 10.0, 16)  # least, largest and number of dead bands that are tried first, over the mean penetration
 # of one number
-FACTORS = (0.8, 0.95, 1.05, 1.25)  # to begin from; a factor of one tells nothing of its own
-DISCOUNTS = (0.999, 0.99, 0.95)
-COHESIONS = (0.02, 0.1, 0.3)  # over the mean limit of friction
+FACTORS = (
+    0.8,
+    0.95,
+    1.05,
+    1.25,
+)  # to begin from; a factor of one tells nothing of its own
 SPRINGS = frozenset({"springs-factor", "normal-springs-factor"})
 OF_FRICTION = frozenset({"friction-factor", "cohesion", "shear-springs-factor", "lagged-friction"})
 
@@ -85,7 +88,7 @@ def search_of(scene: Scene, foreign: Foreign) -> SlopeSearch:
     stepping = _checked_stepping(scene, foreign)
     columns = dict.fromkeys(SlopeSearch.NAMES, (1.0, 1.0))
     plain = SlopeSearch(scene, without_slips(foreign, stepping, columns))
-    first = np.sum(plain.recorded[:, : max(4, int(FIRST * len(stepping.rows)))], axis=1)
+    first = np.sum(plain.recorded[:, :WINDOW], axis=1)
     signs = np.where(first * model_of(scene).force[1::-1] < 0, -1.0, 1.0).tolist()
     factor = 1.0
     if np.any(plain.scene_run) and np.any(plain.recorded):
@@ -124,7 +127,7 @@ def _checked_stepping(scene: Scene, foreign: Foreign) -> Stepping:
     if stepping.factor != 1:
         value = f"{stepping.factor:g} times the scene's"
         raise refused(value=value, advice=f"use {remedy_of(foreign, [Slip('unit', 'time', stepping.factor)])}")
-    if np.ptp(steps) > UNIFORM * steps[0]:
+    if np.ptp(steps) > SEEN * steps[0]:
         raise refused(value="others")
     return stepping
 
@@ -227,7 +230,7 @@ class Habits:
         """Return what of the scene is so."""
         angle = math.radians(scene.load.slope)
         g = scene.load.gravity
-        across = max(g * math.cos(angle) + self.weight * GRAVITY, NONE * GRAVITY)  # a fit may lift the block
+        across = max(g * math.cos(angle) + self.weight * GRAVITY, SLIGHT * GRAVITY)  # a fit may lift the block
         pull = np.array([g * math.sin(angle), across])
         c = scene.contact
         soft = math.exp(-self.softness)
@@ -239,7 +242,7 @@ class Habits:
             "contact.shear_stiffness": c.shear * (soft if self.along else 1.0),
         }
         if self.band is not None:
-            values["contact.band"] = [self.band, REOPENS * self.band]
+            values["contact.band"] = [self.band, OF_NTDDA * self.band]
         return values
 
     def compliance(self, scene: Scene) -> float:
@@ -252,7 +255,7 @@ class Habits:
     @property
     def is_usual(self) -> bool:
         """Whether the weight is the block's own, or none."""
-        return self.weight == 0 or abs(self.weight - 1) <= WHOLE
+        return self.weight == 0 or abs(self.weight - 1) <= SLIGHT
 
     @property
     def springs(self) -> Candidate:
@@ -266,7 +269,7 @@ class Habits:
         scene = search.scene
         causes: dict[str, float | None] = {}
         soft = self.compliance(scene)
-        is_base = YIELDS < soft <= BENIGN_COMPLIANCE and not round_factor(math.exp(-self.softness), self.error)
+        is_base = SEEN < soft <= BENIGN_COMPLIANCE and not round_factor(math.exp(-self.softness), self.error)
         if self.softness and not is_base:
             causes[self.springs.id] = math.exp(-self.softness)
         if self.rules != scene.contact.rules:
@@ -311,7 +314,7 @@ def _nearest(start: Habits, search: SlopeSearch) -> Judged:
     def early_size(habits: Habits) -> float:
         """Return the mean logarithm of what is left of the first stages; a landing spoils the last alone."""
         sizes = [_size_of(habits, search, stage) for stage in STAGES[:-1]]
-        return float(np.mean(np.log(np.maximum(sizes, ROUNDED**2))))
+        return float(np.mean(np.log(np.maximum(sizes, ARITHMETIC**2))))
 
     before_landing = [_before_landing(replace(start, along=along), search) for along in (True, False)]
     banded = _with_band(min(before_landing, key=early_size), search)
@@ -320,8 +323,8 @@ def _nearest(start: Habits, search: SlopeSearch) -> Judged:
         plain = _fitted(replace(habits, band=None), (True, True), search, STAGES[-1])
         habits = habits if _gains(habits, plain, search) else plain
     nearest_habits = judged(habits)
-    has_weight = abs(habits.weight) > NONE
-    has_springs = abs(habits.compliance(search.scene)) > YIELDS
+    has_weight = abs(habits.weight) > SLIGHT
+    has_springs = abs(habits.compliance(search.scene)) > SEEN
     if has_weight and has_springs:
         return nearest_habits
     fewer = judged(_fitted(habits, (has_weight, has_springs), search, STAGES[-1]))
@@ -332,7 +335,7 @@ def _before_landing(habits: Habits, search: SlopeSearch) -> Habits:
     """Return habits fitted to the longest of the first stages that no landing, early or late, has spoiled."""
     for stage in STAGES[:-1]:
         trial = _fitted(habits, (True, True), search, stage)
-        if _size_of(trial, search, stage) > LANDED * math.sqrt(2 * stage) and stage > STAGES[0]:
+        if _size_of(trial, search, stage) > SEEN * math.sqrt(2 * stage) and stage > STAGES[0]:
             break
         habits = trial
     return habits
@@ -355,9 +358,9 @@ def _fitted(habits: Habits, free: tuple[bool, bool], search: SlopeSearch, steps:
         lambda z: search.remainder(at(z).values(search.scene), steps).ravel(),
         np.array([habits.weight, habits.softness])[is_free],
         x_scale=np.array([1.0, 0.1])[is_free],
-        xtol=1e-12,
-        ftol=1e-12,
-        max_nfev=12,
+        xtol=ROUNDING,
+        ftol=ROUNDING,
+        max_nfev=ROUNDS,
     )
     variance = 2 * solution.cost / max(len(solution.fun) - len(solution.x), 1)
     spread = math.sqrt(variance * float(np.linalg.pinv(solution.jac.T @ solution.jac)[-1, -1]))
@@ -369,12 +372,13 @@ def _with_band(habits: Habits, search: SlopeSearch) -> Habits:
     values = habits.values(search.scene)
     corners = search.corners(values)
     first = -_nearness(habits, search)[0]
-    if corners is None or np.all(corners[1][:, first - first // LANDING : first + 1]):  # it departs otherwise
+    if corners is None or np.all(corners[1][:, max(first - ORDER, 0) : first + 1]):  # it departs otherwise
         return habits
     penetration = abs(float(model_of(search.scene.with_values(values)).force[1])) / (2 * search.scene.contact.stiffness)
     low, high, number = BANDS
     best = habits
-    for _ in range(BAND_ROUNDS):
+    ratio = math.inf
+    while ratio > 1 + SEEN:  # as many between the neighbours of the best
         shares = np.geomspace(low, high, number).tolist()
         trials = [replace(habits, band=share * penetration) for share in shares]
         nearness = [_nearness(trial, search) for trial in trials]
@@ -390,13 +394,13 @@ def _with_band(habits: Habits, search: SlopeSearch) -> Habits:
 def _gains(banded: Habits, plain: Habits, search: SlopeSearch) -> bool:
     """Whether a dead band leaves so much less of a history that it is there."""
     steps = search.scene.time.steps
-    return _size_of(plain, search, steps) >= BAND_GAIN * max(_size_of(banded, search, steps), ROUNDED)
+    return _size_of(plain, search, steps) >= FARTHER * max(_size_of(banded, search, steps), ARITHMETIC)
 
 
 def _nearness(habits: Habits, search: SlopeSearch) -> tuple[int, float]:
     """Return minus the rows up to the first that a run does not give, and the size of what it leaves."""
     left = search.remainder(habits.values(search.scene), search.scene.time.steps)
-    beyond = np.flatnonzero(np.any(np.abs(left) > LANDED, axis=0))
+    beyond = np.flatnonzero(np.any(np.abs(left) > SEEN, axis=0))
     first = int(beyond[0]) if len(beyond) else left.shape[1]
     return -first, float(np.linalg.norm(left))
 
@@ -423,7 +427,7 @@ def candidates(scene: Scene) -> Iterator[Candidate]:
         lambda v: f"the cohesion is {v:.4g} Pa where the scene has {c.cohesion:.4g}",
         lambda u: c.cohesion + limit * math.exp(u),
         lambda u: {"contact.cohesion": c.cohesion + limit * math.exp(u)},
-        tuple(map(math.log, COHESIONS)),
+        (math.log(CHANGE),),
     )
     for scheme in of_schemes(scene):
         if scheme.changed(0.0)["time.alpha"]:  # an explicit scheme has no friction
@@ -458,7 +462,7 @@ def verdict_on(search: SlopeSearch, ranked: list[Judged]) -> RunVerdict:
     if verdict.explained:
         return verdict
     others_left = min((each.left for _, each in ranked if each is not run), default=math.inf)
-    bar = min(AT_MOST, BESIDE_BASE * min(others_left, search.left(search.scene_run)))
+    bar = min(FAINT, SLIGHT * min(others_left, search.left(search.scene_run)))
     is_base = "base-compliance" in causes and habits.is_usual and not others and run.left <= bar
     return replace(of_habits, explained=is_base, alike=springs if is_base else verdict.alike)
 

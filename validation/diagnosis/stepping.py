@@ -28,17 +28,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 import dda
+from validation.diagnosis.constants import ARITHMETIC
 from validation.diagnosis.contact_force import FORCED, Contact, Gaps, closed_force, force_of
 from validation.diagnosis.schemes import EXPLICIT, stages
 from validation.diagnosis.variant import GRAVITY, Array, Flags, Histories, Rectangle, Variant
 from validation.theory.stages import Stage
 
-OPEN_CLOSE_ITERATIONS = 6  # as in other DDA programs
-BLOCK = 32  # steps that are summed up at once
-UNEQUAL = 1e-9  # relative difference of two time steps
-PLACES = [1, 4, 3]  # of v, ey and ex among the six unknowns of a block
-WITH_BASE = 4  # unknowns
-FALLS = np.array([1.0, 0.0, 0.0, 1.0])  # which of them have a weight: v and b
+OPEN_CLOSE_ITERATIONS = 6  # given: as in other DDA programs
+PLACES = [1, 4, 3]  # given: of v, ey and ex among the six unknowns of a block
+WITH_BASE = 4  # given: unknowns
+FALLS = np.array([1.0, 0.0, 0.0, 1.0])  # given: which of them have a weight: v and b
 
 
 def histories(rectangle: Rectangle, variants: Sequence[Variant], steps: Array) -> Histories:
@@ -64,7 +63,7 @@ def histories(rectangle: Rectangle, variants: Sequence[Variant], steps: Array) -
 
 def _stepped(rectangle: Rectangle, variants: Sequence[Variant], steps: Array) -> Histories:
     """Return what variants compute under loads that are there at once."""
-    is_equal = len(steps) > 0 and float(np.ptp(steps)) <= UNEQUAL * float(steps[0])
+    is_equal = len(steps) > 0 and float(np.ptp(steps)) <= ARITHMETIC * float(steps[0])
     groups: dict[tuple[Any, ...], list[int]] = {}
     for j, v in enumerate(variants):
         by_powers = is_equal and not (v.opens or v.updated)
@@ -307,7 +306,7 @@ class Stepper:
         state = self.start(small)
         power = T
         length = 1
-        while length < min(BLOCK, steps):
+        while length**2 < steps:  # as many steps summed up at once as there are sums
             rows = np.concatenate([rows, rows @ power], axis=1)
             power = power @ power
             length *= 2

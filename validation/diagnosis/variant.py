@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import dda
+from validation.diagnosis.constants import SEEN
 from validation.scenes import features
 from validation.scenes.scene import Scene
 
@@ -18,10 +19,9 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Family = Literal["newmark", "hht", "wbz", "chung-hulbert", "theta", "leapfrog", "symplectic-euler", "composite"]
 ContactForm = Literal["springs", "mean gap", "dashpot", "implicit", "energy-conserving", "rigid", "impact"]
-GRAVITY = 9.81  # m/s2
+GRAVITY = 9.81  # given: m/s2
 OPENING = features.SCHEMES | {features.UNILATERAL, features.DEAD_BAND, features.WEIGHT}  # of opening contact known here
-AVERAGE_ACCELERATION = (0.25, 0.5)  # alpha and delta that a variant of another scheme has, without effect
-POISSON = 0.499  # a fit may try more
+AVERAGE_ACCELERATION = (0.25, 0.5)  # given: alpha and delta that a variant of another scheme has, without effect
 
 
 @dataclass(frozen=True)
@@ -137,7 +137,8 @@ class Rectangle:
 @lru_cache(maxsize=512)
 def unit_elasticity(poisson: float, plane_strain: bool) -> Array:
     """Return the elasticity in (ey, ex) over Young's modulus [-], Poisson's ratio held within what a material has."""
-    mu = min(max(poisson, -POISSON), POISSON)
+    most = 0.5 - SEEN  # a fit may try more
+    mu = min(max(poisson, -most), most)
     C = dda.Material(1.0, 1.0, mu, "plane strain" if plane_strain else "plane stress").elasticity()
     return np.asarray(C[np.ix_([1, 0], [1, 0])])
 

@@ -16,14 +16,13 @@ from typing import TypeAlias
 import numpy as np
 
 from validation.diagnosis.causes import UNEXPLAINED
+from validation.diagnosis.constants import SLIGHT, UNITS
 from validation.diagnosis.families import ONE_SCHEME
 from validation.diagnosis.fits.bar import norm
 from validation.diagnosis.hooks import DiagnosisHooks
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.numbers import CandidateChange, Values
 from validation.diagnosis.one_change import (
-    NEAR_UNIT,
-    UNITS,
     Residual,
     alike,
     fitted,
@@ -249,7 +248,7 @@ def _units(answer: Columns, runs: Runs) -> Cause | None:
             continue
         x = exact[name][: band.rows]
         factor = float(answer[name][: band.rows] @ x / (x @ x))
-        factors[name] = next((u for u in COLUMN_UNITS if math.isclose(factor, u, rel_tol=NEAR_UNIT)), 1.0)
+        factors[name] = next((u for u in COLUMN_UNITS if math.isclose(factor, u, rel_tol=SLIGHT)), 1.0)
     remainder = runs.apart({name: answer[name] / factor for name, factor in factors.items()}, exact)
     if len({*factors.values()}) == 1 or remainder > 1:
         return None

@@ -16,21 +16,16 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
+from validation.diagnosis.constants import ARITHMETIC, ORDER, SIGMAS, WINDOW
 from validation.metrics.values import largest
 from validation.runs.history import Array
 
-DOUBLE = 15  # decimal digits from which on nothing is seen of a rounding
-ARITHMETIC = 1e-8  # of the largest value: half the digits of double precision, for sums of increments
-WINDOW = 24  # samples: twice the order of the recurrence (static value, four modes, rows at rest)
 FEWEST = 16  # samples: eight of a window, four powers
-LONGEST = 600  # samples that the noise is estimated from
+LONGEST = 600  # rows that the noise is estimated from, and steps of the first fits: more tell little
 MARGIN = 1.6  # of the estimated noise: tens of singular values tell it to a fifth, least squares take more
-LAGS = 10
-SHAPELESS = 4.0  # standard deviations of Ljung and Box's statistic: one white remainder in ten thousand exceeds it
-MEDIAN = 1.4826  # standard deviation of normal noise over the median of its absolute values
+MEDIAN = 1.4826  # given: standard deviation of normal noise over the median of its absolute values
 OUTLYING = 6.0  # spreads: of ten million rows of normal noise none is farther away
-ROUNDED = 0.5  # last digits: the most that rounding leaves
-LOST_ROWS = 20  # rows of which at most one is told as wrong; with more the whole history is in question
+ROUNDED = 0.5  # given: last digits: the most that rounding leaves
 AROUND = 2  # rows at the start, where what dies out stands out too
 
 
@@ -43,7 +38,7 @@ def last_digits(values: Array) -> Array:
     if not places:
         return np.zeros(len(values))
     digits = max(top - last + 1 for top, last in places)
-    if digits >= DOUBLE:
+    if digits >= np.finfo(float).precision:
         return np.zeros(len(values))
     least = 10.0 ** min(last for _, last in places)
     with np.errstate(divide="ignore"):
@@ -95,12 +90,12 @@ def white(remainder: Array) -> bool:
     square = float(r @ r)
     if square == 0:
         return True
-    lags = min(LAGS, n // 4)
+    lags = min(ORDER, n // 4)
     if lags < 1:
         return False
     rho = np.array([float(r[k:] @ r[:-k]) / square for k in range(1, lags + 1)])
     statistic = n * (n + 2) * float(np.sum(rho**2 / (n - np.arange(1, lags + 1))))
-    return statistic <= lags + SHAPELESS * math.sqrt(2 * lags) + SHAPELESS**2 / 2
+    return statistic <= lags + SIGMAS * math.sqrt(2 * lags) + SIGMAS**2 / 2
 
 
 def spread_of_most(remainder: Array) -> float:

@@ -17,13 +17,15 @@ from typing import Any
 
 import numpy as np
 
+from validation.diagnosis.constants import CHANGE, NUDGE, ORDER, ROUNDS, SEEN, UNBOUNDED
 from validation.diagnosis.fits.bar import norm
-from validation.diagnosis.fits.target import ROUNDING, Target
+from validation.diagnosis.fits.target import Target
 from validation.diagnosis.schemes import LARGEST_ALPHA_F
 from validation.diagnosis.variant import Variant
 from validation.runs.history import Array
+from validation.runs.numbers import ROUNDING
 
-NAMED: dict[str, tuple[float, float]] = {
+NAMED: dict[str, tuple[float, float]] = {  # given: alpha, delta
     "constant acceleration": (1 / 2, 1.0),
     "average acceleration": (1 / 4, 1 / 2),
     "linear acceleration": (1 / 6, 1 / 2),
@@ -34,13 +36,8 @@ NAMED: dict[str, tuple[float, float]] = {
     "backward Euler": (1.0, 3 / 2),  # from rest with A0 = 0 row by row: M a1 + K x1 = F, v1 = v + dt a1, x1 = x + dt v1
 }
 NUMBERS = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
-SPAN: dict[str, float] = {name: row["span"] for name, row in NUMBERS.items()}
-LEAST_FACTOR, LARGEST_FACTOR = 1e-7, 1e7  # of what has no range of its own: other units
-DIFFERENCE = 1e-6  # of the spans, for the Jacobian: about the root of the rounding of a relative history
-NORMAL_95 = 1.96
-UNFELT = 1e-12  # of the largest curvature: keeps the equations of a number without effect solvable
-SETTLED = 1e-3  # share of a misfit: a fit that gains less has arrived
-LEAST_INDEPENDENT = 6.0  # rows: a smooth residual of a few swings tells that much
+SPAN: dict[str, float] = {name: row.get("span", CHANGE) for name, row in NUMBERS.items()}
+NORMAL_95 = 1.96  # given: standard deviations
 UNTOLD = 0.05  # share of its span from which on a number counts as not told by the data
 
 
@@ -61,7 +58,8 @@ class Fit:
         square = float(r @ r)
         lag = float(r[1:] @ r[:-1]) / square if square else 0.0
         lag = min(max(lag, 0.0), 1.0)
-        return max(len(r) * (1 - lag) / (1 + lag), min(len(r), LEAST_INDEPENDENT))
+        # a smooth residual of a few swings tells as much as half the order
+        return max(len(r) * (1 - lag) / (1 + lag), min(len(r), ORDER / 2))
 
 
 @dataclass(frozen=True)
@@ -72,7 +70,7 @@ class Interval:
     half_width: float
 
 
-def fit(target: Target, starts: Sequence[tuple[Variant, tuple[str, ...]]], rounds: int = 8) -> list[Fit]:
+def fit(target: Target, starts: Sequence[tuple[Variant, tuple[str, ...]]], rounds: int = ROUNDS) -> list[Fit]:
     """Fit variants, each with the names of its free numbers, in some rounds of Levenberg and Marquardt's method."""
     goal = target.values
     best = _linearised(target, starts, goal)
@@ -86,13 +84,13 @@ def fit(target: Target, starts: Sequence[tuple[Variant, tuple[str, ...]]], round
         for i, new in zip(trial_of, _linearised(target, trials, goal), strict=True):
             gain = best[i].misfit - new.misfit
             damping[i] *= 0.1 if gain > 0 else 10.0
-            active[i] = damping[i] < 1e4 and not 0 <= gain <= SETTLED * new.misfit and new.misfit > ROUNDING
+            active[i] = damping[i] < 1e4 and not 0 <= gain <= SEEN * new.misfit and new.misfit > ROUNDING
             if gain > 0:
                 best[i] = new
     return best
 
 
-def fit_one(target: Target, variant: Variant, free: tuple[str, ...] = (), rounds: int = 8) -> Fit:
+def fit_one(target: Target, variant: Variant, free: tuple[str, ...] = (), rounds: int = ROUNDS) -> Fit:
     """Fit one variant with its free numbers."""
     return fit(target, [(variant, free)], rounds)[0]
 
@@ -109,8 +107,7 @@ def _linearised(target: Target, starts: Sequence[tuple[Variant, tuple[str, ...]]
     for variant, free in starts:
         base = answers[:, at]
         rates = [
-            (answers[:, at + 1 + j] - base) / (DIFFERENCE * SPAN[name] * _side(variant, name))
-            for j, name in enumerate(free)
+            (answers[:, at + 1 + j] - base) / (NUDGE * SPAN[name] * _side(variant, name)) for j, name in enumerate(free)
         ]
         jacobian = np.column_stack(rates) if rates else np.empty((len(base), 0))
         residual = goal - base
@@ -121,11 +118,11 @@ def _linearised(target: Target, starts: Sequence[tuple[Variant, tuple[str, ...]]
 
 def _side(variant: Variant, name: str) -> float:
     """Return the side to which a number is nudged: away from its upper bound."""
-    return -1.0 if getattr(variant, name) + SPAN[name] * DIFFERENCE > bounds(name, variant)[1] else 1.0
+    return -1.0 if getattr(variant, name) + SPAN[name] * NUDGE > bounds(name, variant)[1] else 1.0
 
 
 def _nudged(variant: Variant, name: str) -> Variant:
-    value = getattr(variant, name) + _side(variant, name) * DIFFERENCE * SPAN[name]
+    value = getattr(variant, name) + _side(variant, name) * NUDGE * SPAN[name]
     return changed(variant, {name: value})
 
 
@@ -134,7 +131,8 @@ def _moved(current: Fit, damping: float) -> Variant:
     span = np.array([SPAN[name] for name in current.free])
     J = current.jacobian * span
     H = J.T @ J
-    scale = np.diag(H) + UNFELT * (np.max(np.diag(H)) or 1.0)
+    # keeps the equations of a number without effect solvable
+    scale = np.diag(H) + ROUNDING * (np.max(np.diag(H)) or 1.0)
     step = np.linalg.solve(H + damping * np.diag(scale), J.T @ current.residual) * span
     changes = {
         name: float(np.clip(getattr(current.variant, name) + change, *bounds(name, current.variant)))
@@ -147,7 +145,7 @@ def bounds(name: str, variant: Variant) -> tuple[float, float]:
     """Return the range within sense of a free number of a variant."""
     if name == "spectral" and variant.family == "hht":
         return 0.0, LARGEST_ALPHA_F
-    return NUMBERS[name].get("low", LEAST_FACTOR), NUMBERS[name].get("high", LARGEST_FACTOR)
+    return NUMBERS[name].get("low", 1 / UNBOUNDED), NUMBERS[name].get("high", UNBOUNDED)
 
 
 def is_factor(name: str) -> bool:

@@ -10,15 +10,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.diagnosis.fits.bar import AROUND, LOST_ROWS, Bar
+from validation.diagnosis.constants import UNBOUNDED, WINDOW
+from validation.diagnosis.fits.bar import AROUND, Bar
 from validation.diagnosis.fits.bar import norm as size_of
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Rectangle, Variant
 from validation.runs.history import Array
-
-LEAST_ROWS = 24  # of a history that is fitted in part
-CHUNK = 1500  # variants in one pass
-ROUNDING = 1e-10  # relative L2 that no recorded history comes below
 
 
 def norm(values: Array) -> float:
@@ -71,13 +68,13 @@ class Target:
 
     def responses(self, variants: Sequence[Variant]) -> Array:
         """Return the variants' histories as joined rows, one column each."""
-        columns = [np.empty((self.recorded.size, 0))]
-        for first in range(0, len(variants), CHUNK):
-            stepped = histories(self.column, variants[first : first + CHUNK], self.steps)
-            both = [stepped.displacement[self.rows], stepped.pressure[self.rows]]
-            with np.errstate(all="ignore"):  # variants that grow beyond a double are far from any history
-                columns.append(self.join(np.array(both[: len(self.recorded)])))
-        return np.nan_to_num(np.hstack(columns), nan=1e6).clip(-1e6, 1e6)
+        if not variants:
+            return np.empty((self.recorded.size, 0))
+        stepped = histories(self.column, variants, self.steps)
+        both = [stepped.displacement[self.rows], stepped.pressure[self.rows]]
+        with np.errstate(all="ignore"):  # variants that grow beyond a double are far from any history
+            columns = self.join(np.array(both[: len(self.recorded)]))
+        return np.nan_to_num(columns, nan=UNBOUNDED).clip(-UNBOUNDED, UNBOUNDED)
 
     def parts(self, joined: Array) -> Array:
         """Return joined rows as columns in their units, (columns, rows)."""
@@ -100,7 +97,7 @@ class Target:
         """
         rows = np.array([bar.outlying(part) for bar, part in zip(self.bars, self.parts(joined), strict=True)])
         most = int(np.max(np.sum(rows, axis=1)))
-        if not 0 < most <= max(1, len(self.rows) // LOST_ROWS):
+        if not 0 < most <= max(1, len(self.rows) // WINDOW):
             return None
         if np.any(rows[:, :AROUND]) or np.any(rows[:, 2:] & rows[:, 1:-1] & rows[:, :-2]):
             return None
@@ -109,7 +106,7 @@ class Target:
     def inner(self, joined: Array, variant: Variant) -> Array:
         """Return joined rows without those that a shift leaves open: a program may write anything there."""
         late, n = math.ceil(max(abs(variant.shift), abs(variant.late))), len(self.rows)
-        if not late or n < LEAST_ROWS:
+        if not late or n < WINDOW:
             return joined
         inner_rows = joined.reshape(-1, n).copy()
         inner_rows[:, :late] = 0
@@ -128,7 +125,7 @@ class Target:
 
     def until(self, steps: int) -> Target:
         """Return the rows up to a step, at least a few."""
-        length = max(int(np.searchsorted(self.rows, steps)), min(LEAST_ROWS, len(self.rows)))
+        length = max(int(np.searchsorted(self.rows, steps)), min(WINDOW, len(self.rows)))
         rounding = None if self.rounding is None else self.rounding[:, :length]
         left_out = None if self.left_out is None else self.left_out[:, :length]
         steps_of_rows = self.steps[: int(self.rows[length - 1]) + 1]
