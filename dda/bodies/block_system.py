@@ -322,9 +322,7 @@ def _block_diagonal(blocks: Sequence[Array]) -> csr_array:
     """Return the matrix with blocks on its diagonal, without their zeros."""
     from scipy.sparse import block_diag, csr_array
 
-    matrix = csr_array(block_diag([np.zeros((0, 0)), *blocks]))
-    matrix.eliminate_zeros()
-    return matrix
+    return block_diag([csr_array((0, 0)), *map(csr_array, blocks)], format="csr")
 
 
 def _inverse(matrix: Array) -> Array:
