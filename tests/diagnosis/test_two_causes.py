@@ -70,8 +70,9 @@ def test_two_factors_of_a_product_stand_for_two_others(monkeypatch):
     young = Move("young-factor", {}, ("young",), (1.3,))
     load = Move("load-factor", {}, ("load",), (0.8,))
     monkeypatch.setattr(search, "moves", lambda target, scene: [*FEW[2:5], young, load, *FEW[-2:]])
-    target, _, two = told(replace(OWN, young=1.2, softness=-np.log(1.2)), columns=1)
-    ties = with_same_rows(target, OWN, two)
+    target = target_of(replace(OWN, young=1.2, softness=-np.log(1.2)), 1)
+    two = search.twofold(target, OWN, search.simple(target, OWN))  # not kept: rounding tells which pair is first
+    ties = search.with_same_rows(target, OWN, two)
     pairs = {frozenset(each.ids): each.fit.variant for each in (ties.best, *ties.alike)}
     assert not ties.explained and len(pairs) == 2
     stiffer = pairs[frozenset(["young-factor", "springs-factor"])]
@@ -81,11 +82,11 @@ def test_two_factors_of_a_product_stand_for_two_others(monkeypatch):
     both = two.best.moves
     several = [Explanation(some, two.best.fit) for some in (both[:1], both, (*both, FEW[2]))]
     monkeypatch.setattr(search, "relatives", lambda *given: several)
-    assert [each.ids for each in with_same_rows(target, OWN, two).alike] == [each.ids for each in several[:2]]
+    assert [each.ids for each in search.with_same_rows(target, OWN, two).alike] == [each.ids for each in several[:2]]
     monkeypatch.undo()
     for explained in (True, False):
         alone = Verdict(two.scene_fit, Explanation((), two.scene_fit), explained)
-        assert with_same_rows(target, OWN, alone).same_rows == ()
+        assert search.with_same_rows(target, OWN, alone).same_rows == ()
 
 
 def test_a_density_and_a_modulus_stand_for_a_height(monkeypatch):
