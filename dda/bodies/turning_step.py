@@ -25,7 +25,21 @@ import numpy as np
 
 from dda.bodies.turning_body import EXACT, Turn, directions, place, turn
 from dda.contact.dense import Matrix, Vector, copy, copy_matrix
-from dda.contact.rows import FOUND, INSIDE, LOWER, NONE, Laws, Rows, Solved, States, find, flexed, rows_of, work_for
+from dda.contact.rows import (
+    FOUND,
+    INSIDE,
+    LOWER,
+    NONE,
+    Laws,
+    Rows,
+    Solved,
+    States,
+    find,
+    flexed,
+    rows_of,
+    unpair_ways,
+    work_for,
+)
 from dda.march.account import add_contact_losses, add_damping, over_stages
 from dda.march.step import (
     AnyState,
@@ -483,10 +497,7 @@ def set_openings(march: March, length: Length, near: int) -> None:
         room.pushed[i] -= rolling.x[i]
     move_rows(march.body, room.pushed, free)
     if march.laws.paired:
-        mean = free[2]
-        half = free[3] / 2
-        free[2] = mean - half
-        free[3] = mean + half
+        unpair_ways(free)
     for r in range(len(free)):
         free[r] -= flexed(march.laws, length.flexible, r, rolling.after.force)
     for k in range(2):

@@ -695,16 +695,21 @@ def set_pair(laws: Laws, work: Work, size: int, closing: int) -> None:
         work.right[G][1 + k] = -1.0 if work.closing[k] == 0 else 1.0
 
 
+def unpair_ways(rows: Vector) -> None:
+    """Write the ways of two contacts, rows 2 and 3, in the place of their mean and difference."""
+    mean = rows[2]
+    half = rows[3] / 2
+    rows[2] = mean - half
+    rows[3] = mean + half
+
+
 def unpair(paired: Matrix, out: Matrix) -> None:
     """Write a flexibility in the ways of two contacts from that in their mean and difference."""
     for r in range(4):
         for s in range(4):
             out[r][s] = paired[r][s]
     for r in range(4):
-        mean = out[r][2]
-        half = out[r][3] / 2
-        out[r][2] = mean - half
-        out[r][3] = mean + half
+        unpair_ways(out[r])
     for s in range(4):
         mean = out[2][s]
         half = out[3][s] / 2

@@ -48,6 +48,7 @@ from dda.contact.rows import (
     flexibility_for,
     rows_of,
     unpair,
+    unpair_ways,
     work_for,
 )
 from dda.march.energy import SUMS
@@ -511,12 +512,9 @@ def free_rows(march: March, before: AnyState) -> None:
         if not (paired and r == 3):  # a base that moves leaves the difference of two ways alone
             free[r] -= ground[r][0] * along + ground[r][1] * away
     if paired:
-        mean = free[2]
-        difference = free[3]
-        march.work.pair[0] = mean + (opening[2] + opening[3]) / 2
-        march.work.pair[1] = difference + (opening[3] - opening[2])
-        free[2] = mean - difference / 2
-        free[3] = mean + difference / 2
+        march.work.pair[0] = free[2] + (opening[2] + opening[3]) / 2
+        march.work.pair[1] = free[3] + (opening[3] - opening[2])
+        unpair_ways(free)
     for r in range(len(free)):
         q[r] = opening[r] + free[r]
 

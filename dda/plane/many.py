@@ -216,7 +216,7 @@ def solve_states(many: Many, laws: Laws, before: Rows, length: Length, after: Ro
         for i in range(len(many.x)):
             many.x[i] = 0.0
         add_forces(many, laws, work, after, many.x, 1.0)
-        correct(many, laws, length, after, work)
+        correct(many, length, after)
         add_forces(many, laws, work, after, many.x, 1.0)  # one difference, which rounds less than two forces do
         settled = True
         for k in range(n):
@@ -315,8 +315,8 @@ def add_forces(many: Many, laws: Laws, work: Work, after: Rows, x: Vector, whole
             after.force[r] -= displacement * work.beta[k] / laws.compliance[r]
 
 
-def correct(many: Many, laws: Laws, length: Length, after: Rows, work: Work) -> None:
-    """Add to increments and forces what the equilibrium that is left over adds to them, by the factors at hand."""
+def correct(many: Many, length: Length, after: Rows) -> None:
+    """Add to the increments what the equilibrium that is left over adds to them, by the factors at hand."""
     rest = many.rest
     for i in range(len(rest)):
         rest[i] = -many.x[i] * stiffness_of(length, i)
@@ -324,12 +324,12 @@ def correct(many: Many, laws: Laws, length: Length, after: Rows, work: Work) -> 
     solve_blocks(many.matrix, rest)
     for i in range(len(rest)):
         many.x[i] += rest[i]
-    add_forces(many, laws, work, after, rest, 0.0)
 
 
 def refine(many: Many, laws: Laws, length: Length, after: Rows, work: Work) -> None:
     """Add the forces of the equilibrium that is left over, by the factors of the last solve."""
-    correct(many, laws, length, after, work)
+    correct(many, length, after)
+    add_forces(many, laws, work, after, many.rest, 0.0)
     for r in range(2 * laws.contacts):
         if after.force[r] != 0.0:
             after.opening[r] = 0.0 - after.force[r] * laws.compliance[r]
