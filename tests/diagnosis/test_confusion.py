@@ -49,10 +49,11 @@ def test_the_counts_of_the_documentation_are_these(fifty):
 @pytest.mark.parametrize(
     ("kind", "seeds", "least"),
     [
-        # an opened contact beside a load of 0.99999998; two numbers of a product for two others
-        ("slips", [*range(4), 5, 42, 117], 3),
-        # the horizon of `bar` beside the last one is its first row
-        ("schemes", [80, 88, 96, 104, 108], 2),
+        # an opened contact beside a load of 0.99999998; two numbers of a product for two others; a cause that noise
+        # lets miss the bar by a hair, beside two that pass; a rare one of a product
+        ("slips", [*range(4), 5, 42, 117, 33027, 40113], 3),
+        # a method of no catalogue that lands once; the horizon of `bar` beside the last one is its first row
+        ("schemes", [44, 80, 88, 96, 104, 108], 2),
     ],
 )
 def test_a_named_cause_is_right_and_most_are_named(kind, seeds, least):

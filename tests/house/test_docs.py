@@ -41,8 +41,6 @@ PAGES = (
     "rotation.md",
     "waves.md",
     "judge.md",
-    "answers.md",
-    "compare.md",
     "ci.md",
     "fenicsx.md",
 )
@@ -98,7 +96,7 @@ def test_code_blocks_run(page, tmp_path, finished_cases, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(str(tmp_path))
     monkeypatch.setattr(validation.studies, "__path__", [*validation.studies.__path__])
-    if page == "answers.md":  # the exact motions of all problems take half a minute; all of a pack have a test
+    if page == "judge.md":  # the exact motions of all problems take half a minute; all of a pack have a test
         monkeypatch.setattr(pack, "names", lambda: ("locked", "sliding", "column", "standing"))
     names = {}
     assert blocks(DOCS / page)

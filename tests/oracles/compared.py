@@ -27,7 +27,7 @@ from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
 from validation.scenes.scene import Scene
 
-PAGE = Path(__file__).parents[2] / "docs" / "compare.md"
+PAGE = Path(__file__).parents[2] / "docs" / "judge.md"
 UNKNOWN, SAME = "unexplained", "same"
 TABLES = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
 TIMES = ("rho", "E", "p", "q", "side", "gg")  # slips that are factors

@@ -61,8 +61,7 @@ PAGES = {  # of the documentation, each with the commands that it is about
     "claims.md": ("claims",),
     "verification.md": ("verify",),
     "ci.md": ("diff",),
-    "judge.md": ("judge", "export-pack"),
-    "compare.md": ("compare",),
+    "judge.md": ("judge", "compare", "export-pack"),
     "choose.md": ("advise",),
 }
 ORDER = list(itertools.chain.from_iterable(GROUPS.values()))

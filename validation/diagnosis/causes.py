@@ -125,7 +125,7 @@ def causes_of(
 
 
 def values_of(rectangle: Rectangle, ids: Sequence[str], v: Variant) -> dict[str, float]:
-    """Return the number of every cause that has one, as docs/compare.md says."""
+    """Return the number of every cause that has one, as docs/judge.md says."""
     values = {}
     for name in ids:
         if name in DERIVED:

@@ -124,6 +124,12 @@ def not_installed(scene: Scene, solvers: Iterable[str]) -> tuple[str, ...]:
 
 def verdict_of_solvers(scene: Scene, readings: Sequence[Reading], names: Iterable[str]) -> RunVerdict | None:
     """Return the nearest of the solvers that apply to a scene, each as it is or with one thing changed."""
+    searches = searches_beside(scene, readings, names)
+    return as_they_are(searches) or with_one_change(searches)
+
+
+def searches_beside(scene: Scene, readings: Sequence[Reading], names: Iterable[str]) -> list[SolverSearch]:
+    """Return the searches beside those solvers that apply to a scene, for each reading of a history."""
     searches = []
     for name in names:
         solver = get_solver(name)
@@ -131,10 +137,20 @@ def verdict_of_solvers(scene: Scene, readings: Sequence[Reading], names: Iterabl
         is_slow = name == WITHOUT_SCHEME and scene.time.discount != 1
         if solver.refusal(scene) is None and solver.missing(scene) is None and not is_slow:
             searches += [SolverSearch(scene, reading, name) for reading in readings]
+    return searches
+
+
+def as_they_are(searches: Sequence[SolverSearch]) -> RunVerdict | None:
+    """Return the nearest of the solvers whose run of the scene as it is explains a history, if one does."""
     own = [search for search in searches if search.is_scene(MESH if search.model else 0.0)]
-    if own:
-        nearest_own = min(own, key=lambda search: (len(search.reading.corrected), search.left(search.scene_run)))
-        return _named(RunVerdict(nearest_own, True))
+    if not own:
+        return None
+    nearest = min(own, key=lambda search: (len(search.reading.corrected), search.left(search.scene_run)))
+    return _named(RunVerdict(nearest, True))
+
+
+def with_one_change(searches: Sequence[SolverSearch]) -> RunVerdict | None:
+    """Return the nearest of the solvers, each with one thing changed in the scene."""
     nearest: dict[str, SolverSearch] = {}
     for search in sorted(searches, key=lambda search: search.left(search.scene_run)):
         nearest.setdefault(search.model, search)  # of each solver the reading that comes nearest to it

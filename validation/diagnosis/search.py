@@ -180,16 +180,24 @@ def decided(target: Target, scene_fit: Fit, explanations: Sequence[Explanation])
     if not fine:
         return Verdict(scene_fit, nearest, False)
     deviations = target.deviations(min(fine, key=lambda f: f.fit.misfit).fit.residual)
-    scores = {id(f): score(target, deviations, f) for f in fine}
-    near = min(scores.values()) + CLEAR
-    close = sorted((f for f in fine if scores[id(f)] < near), key=lambda f: scores[id(f)])
+    scores = {id(f): score(target, deviations, f) for f in (*fine, *explanations)}
+    near = min(scores[id(f)] for f in fine) + CLEAR
+
+    def order(explanation: Explanation) -> tuple[float, tuple[str, ...]]:
+        """Return by what explanations are told first; equally likely ones by name, since their order is rounding's."""
+        return round(scores[id(explanation)], 3), explanation.ids
+
+    close = sorted((f for f in fine if scores[id(f)] < near), key=order)
     # a change is there only if the rows are clearly worse without it
     ids = min((f.ids for f in close if set(f.ids) <= set(close[0].ids)), key=len)
     best = min((f for f in close if f.ids == ids), key=lambda f: len(f.fit.free))
     best, names = _canonical(target, best, close)
-    # not the best one with a further part that has no effect
-    alike = {f.ids: f for f in reversed(close) if f.ids not in names and not set(best.ids) < set(f.ids)}
-    is_named = not alike and _stands_out(target, scene_fit, best)
+    # what is as likely and misses the bar by a hair is as likely still, but no change with a part that has no effect
+    likely = sorted((f for f in explanations if scores[id(f)] < near and f not in close), key=order)
+    several = [*close, *(f for f in likely if is_determined(target, scene_fit, f) and not set(f.ids) <= set(best.ids))]
+    least = [f for f in several if not any(set(other.ids) < set(f.ids) for other in (best, *close, *likely))]
+    alike = {f.ids: f for f in reversed(least) if f.ids not in names}
+    is_named = not alike and _stands_out(target, scene_fit, best) and not _of_one_landing(target, best)
     aliases = tuple(f for ids, f in names.items() if ids != best.ids)
     others = {f.ids: f for f in fine if f.ids not in {*names, *alike} and not set(best.ids) < set(f.ids)}
     return Verdict(
@@ -237,9 +245,10 @@ def score(target: Target, deviations: Array, explanation: Explanation) -> float:
 
 
 def _is_rare(move: Move, among: int) -> bool:
-    """Whether people rarely make a cause; a factor on one column they make by itself."""
-    is_frequent = CAUSES[move.id].usual or move.id in SURROUNDINGS
-    return not is_frequent or (among > 1 and "displacement_factor" in move.free)
+    """Whether people rarely make a cause: of two factors neither, of a factor on one column they make by itself."""
+    if among > 1 and move.id in FACTORS:
+        return "displacement_factor" in move.free
+    return not (CAUSES[move.id].usual or move.id in SURROUNDINGS)
 
 
 def _canonical(
@@ -399,6 +408,14 @@ def _stands_out(target: Target, scene_fit: Fit, explanation: Explanation) -> boo
     return explanation.fit.misfit <= min(most, CLEARLY**-changes) * scene_fit.misfit
 
 
+def _of_one_landing(target: Target, explanation: Explanation) -> bool:
+    """Whether an explanation has a restitution from one landing: every contact leaves some share of one speed."""
+    if "restitution" not in explanation.fit.free:
+        return False
+    is_open = histories(target.column, [explanation.fit.variant], target.steps).open[:, 0]
+    return int(np.count_nonzero(is_open[:-1] & ~is_open[1:])) < 2
+
+
 # ---- the search ----
 
 
@@ -438,7 +455,7 @@ def twofold(target: Target, scene: Variant, before: Verdict) -> Verdict:
         pairs += [pair for pair in itertools.combinations(few, 2) if _together(pair)]
         damping = tuple(move for move in every if move.id in RAYLEIGH)
         pairs += [damping] if len(damping) == len(RAYLEIGH) else []
-    verdict = _nearer(decided(target, before.scene_fit, fitted(target, scene, pairs)), before)
+    verdict = _nearer(decided(target, before.scene_fit, [*fitted(target, scene, pairs), *before.single]), before)
     if verdict.reached:
         return verdict
     faults = [move for move in few if move.id not in SURROUNDINGS]
@@ -448,7 +465,7 @@ def twofold(target: Target, scene: Variant, before: Verdict) -> Verdict:
     beside = fitted(target, scene, [(move, *parts) for move in faults if _together((move, *parts))])[:MOST_ALIKE]
     fewer = [(f.moves[0], *some) for f in beside for some in around if _together((f.moves[0], *some))]
     explanations = [f for f in fitted(target, scene, fewer) if benign_springs(target.column, f.fit.variant)]
-    last = decided(target, before.scene_fit, [*explanations, *_heavy(target, explanations[:3])])
+    last = decided(target, before.scene_fit, [*explanations, *_heavy(target, explanations[:3]), *before.single])
     return _nearer(last, verdict)
 
 

@@ -499,7 +499,8 @@ def _ramped(values: Array, steps: float) -> Array:
 
     The load of step n is min(1, n / steps): a sum of loads of 1 / steps each, one more at every step.
     """
-    shares = np.diff(np.minimum(np.arange(math.ceil(steps) + 1) / steps, 1.0)) if steps > 1 else np.ones(1)
+    count = min(math.ceil(steps), len(values))  # a fit may try ramps of millions of steps
+    shares = np.diff(np.minimum(np.arange(count + 1) / steps, 1.0)) if steps > 1 else np.ones(1)
     return np.asarray(np.convolve(values, shares)[: len(values)])
 
 
