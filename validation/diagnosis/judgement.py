@@ -210,10 +210,11 @@ def judged_block(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
     alone = verdict.best.fit.misfit
     has_rivals = scene.contact.law == "locked" and scene.time.scheme == "newmark" and np.ptp(case.target.steps) == 0
     rivals = searches_beside(scene, [case.reading], rivals_of(scene)) if has_rivals else []
-    theirs = as_they_are(rivals)
-    if theirs is None or FARTHER * theirs.left > alone:
+    theirs = as_they_are(rivals) or with_one_change([rival for rival in rivals if not rival.is_slow])
+    if theirs is None or not theirs.explained or FARTHER * theirs.left > alone:
         verdict = twofold(case.target, scene_variant, verdict)
-        theirs = None if verdict.explains else with_one_change(rivals)  # many runs of a mesh, which take longest
+        # runs of a mesh take longest
+        theirs = None if verdict.explains else with_one_change([rival for rival in rivals if rival.is_slow])
     if theirs is not None and theirs.explained and FARTHER * theirs.left <= alone:
         return _of_rival(case, theirs)
     return _answer(case, verdict)

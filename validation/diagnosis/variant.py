@@ -113,7 +113,8 @@ class Rectangle:
     @cached_property
     def model(self) -> dda.TwoBlockModel:
         """The two-block model, whose matrices are those of every variant."""
-        contact = dda.Contact(self.normal / 2, self.shear / 2)
+        shear = max(self.shear, np.finfo(float).eps * self.normal)  # contact that opens may have none
+        contact = dda.Contact(self.normal / 2, shear / 2)
         return dda.TwoBlockModel(self.block(), contact, self.pressure, gravity=self.gravity)
 
     def block(self) -> dda.Block:
