@@ -135,8 +135,13 @@ def searches_beside(scene: Scene, readings: Sequence[Reading], names: Iterable[s
         solver = get_solver(name)
         # the damped continuum takes minutes over long histories
         is_slow = name == WITHOUT_SCHEME and scene.time.discount != 1
-        if solver.refusal(scene) is None and solver.missing(scene) is None and not is_slow:
+        if solver.refusal(scene) is not None or solver.missing(scene) is not None or is_slow:
+            continue
+        try:
             searches += [SolverSearch(scene, reading, name) for reading in readings]
+        except InputError:  # an exact solution has an end
+            if name == DDA:
+                raise
     return searches
 
 

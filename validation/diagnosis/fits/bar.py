@@ -16,7 +16,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.diagnosis.constants import ARITHMETIC, ORDER, SIGMAS, WINDOW
+from validation.diagnosis.constants import ARITHMETIC, CHANGE, ORDER, SIGMAS, WINDOW
 from validation.metrics.values import largest
 from validation.runs.history import Array
 
@@ -133,8 +133,13 @@ class Bar:
         spread = self.spread
         if remainder is not None:
             spread = min(spread, spread_of_most(remainder[self.moving]))
+        return np.asarray(np.hypot(self.digits, spread))
+
+    @property
+    def digits(self) -> Array:
+        """Standard deviation of each row of its digits and of double precision."""
         least = (ARITHMETIC * self.size) ** 2 or np.finfo(float).tiny  # of a column at rest
-        return np.asarray(np.sqrt(self.rounding**2 / 12 + spread**2 + least))
+        return np.asarray(np.sqrt(self.rounding**2 / 12 + least))
 
     def outlying(self, remainder: Array) -> NDArray[np.bool_]:
         """Return which rows of a remainder are farther away than the noise of most of its rows would have them."""
@@ -150,8 +155,10 @@ class Bar:
         """Whether a remainder is digits and noise, as the head of this module says."""
         if np.all(np.abs(remainder) <= ROUNDED * self.rounding + ARITHMETIC * self.size):
             return True
-        if np.any(self.outlying(remainder)):
+        # the few landings of a contact that bounces have no recurrence, and look like noise throughout
+        if norm(remainder) > CHANGE * self.norm or np.any(self.outlying(remainder)):
             return False
+        if norm(remainder) <= norm(self.digits):  # of a slow motion they have a shape, noise has none
+            return True
         shares = remainder / self.deviation(remainder)
-        left = norm(shares) / math.sqrt(len(shares))
-        return left <= 1 or (left <= MARGIN and white(shares))
+        return norm(shares) <= MARGIN * math.sqrt(len(shares)) and white(shares[self.moving])
