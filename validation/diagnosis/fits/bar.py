@@ -1,10 +1,11 @@
 """How much may remain of a history that is explained: what its digits and its noise leave.
 
 A row has the standard deviation sigma, sigma^2 = unit^2 / 12 + noise^2 + (1e-8 size)^2, of its last digit, of noise and
-of double precision. A column is explained if no row is beyond its last digit, or if what remains is no larger than
-sigma, or hardly larger and white, and has no row beyond six sigma. The noise is what the column shows by itself: any
-linear model of one block obeys one recurrence of low order, so that the Hankel matrix of its samples has that rank; the
-singular values beyond it are noise, whatever the model.
+of double precision. A column is explained if no row is beyond its last digit, or if what remains is hardly larger than
+digits leave by themselves, or hardly larger than sigma and white, and has no row beyond six sigma. The noise is what the
+column shows by itself: any linear model of one block obeys one recurrence of low order, so that the Hankel matrix of its
+samples has that rank; the singular values beyond it are noise, whatever the model. Contact that opens obeys none and
+looks noisier than it is: noise is no tenth of a column, and has no shape.
 """
 
 from __future__ import annotations
@@ -158,7 +159,7 @@ class Bar:
         # the few landings of a contact that bounces have no recurrence, and look like noise throughout
         if norm(remainder) > CHANGE * self.norm or np.any(self.outlying(remainder)):
             return False
-        if norm(remainder) <= norm(self.digits):  # of a slow motion they have a shape, noise has none
+        if norm(remainder) <= MARGIN * norm(self.digits):  # of a slow motion they have a shape, noise has none
             return True
         shares = remainder / self.deviation(remainder)
         return norm(shares) <= MARGIN * math.sqrt(len(shares)) and white(shares[self.moving])
