@@ -6,12 +6,10 @@ from pathlib import Path
 import numpy as np
 from oracles.stand_ins import assert_kept, numbers_in, summed
 
-from validation.diagnosis.columns import of_scene
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.hooks import DiagnosisHooks
 from validation.diagnosis.moves import moves
-from validation.diagnosis.one_change import of_discount, of_numbers, of_schemes
-from validation.diagnosis.slopes import candidates as of_slope
+from validation.diagnosis.one_change import of_scene
 from validation.diagnosis.variant import Rectangle, Variant
 from validation.scenes.scene import load_scene
 
@@ -59,18 +57,8 @@ def changes_of(scene):
     """Yield what each candidate of a scene is called, begins from and changes."""
     hooks = DiagnosisHooks.of(scene)
     for number in (*hooks.numbers(scene), *hooks.numbers_of_layers(scene)):
-        yield number.id, number.changed(scene, 1.3)
-    candidates = [
-        *hooks.laws(scene),
-        *of_schemes(scene),
-        *of_numbers(scene, (1.0, 0.7)),
-        of_discount(scene, (0.9, 0.8)),
-    ]
-    if scene.column is not None and scene.column.law != "bonded":
-        candidates += of_scene(scene)
-    if scene.name == "field-sliding":
-        candidates += of_slope(scene)
-    for change in candidates:
+        yield number.id, number.changed(1.3)
+    for change in of_scene(scene, (1.0, 0.7)):
         number = change.value(-0.2)
         yield change.id, "none" if np.isnan(number) else number, change.starts, change.changed(-0.2)
     yield hooks.accurate(scene), hooks.rivals(scene)

@@ -11,8 +11,9 @@ from oracles.scheme_histories import rounded
 from validation import solve
 from validation.diagnosis import columns
 from validation.diagnosis.beside import RunVerdict
-from validation.diagnosis.columns import ColumnSearch, of_scene
+from validation.diagnosis.columns import ColumnSearch
 from validation.diagnosis.judgement import compare
+from validation.diagnosis.one_change import of_scene
 from validation.diagnosis.reading import Foreign, steppings
 from validation.diagnosis.readings import Reading, Slip
 from validation.errors import InputError
@@ -91,8 +92,8 @@ def is_named(answer, cause, number):
 
 
 def test_one_of_few_candidates_is_named(monkeypatch):
-    few = [one for one in of_scene(DROPPED) if one.id in ("start", "gg")]
-    monkeypatch.setattr(columns, "of_scene", lambda scene: few)
+    few = [one for one in of_scene(DROPPED, ()) if one.id in ("start", "gg")]
+    monkeypatch.setattr(ColumnSearch, "candidates", lambda search: few)
     answer = judged(DROPPED.with_values({"time.steps": 40}), time__gg=0.99)
     is_named(answer, "gg", 0.99)
     assert any(stage.agrees is False for stage in answer.evidence)  # a fault explained is a fault

@@ -28,7 +28,7 @@ from validation.diagnosis.fits import bar
 from validation.diagnosis.fits.fit import NAMED, NUMBERS, _side, bounds, is_factor, named
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.moves import OF_NTDDA, Move, moves
-from validation.diagnosis.numbers import CandidateChange
+from validation.diagnosis.numbers import CandidateChange, fixed
 from validation.diagnosis.one_change import Fitted
 from validation.diagnosis.reading import Foreign, Stepping, steppings
 from validation.diagnosis.readings import Slip
@@ -309,22 +309,22 @@ def names():
 
 def fits():
     """Yield where fits of one number end, after how many runs."""
-    for target, start, hopeless in ((0.3, 0.1, 1e9), (0.3, 2.5, 1e9), (9.0, 0.1, 1e-3), (-0.2, 0.0, 1e-3)):
-        for rounds in (2, 3, 8):
-            calls = []
+    for target, start in ((0.3, 0.1), (0.3, 2.5), (9.0, 0.1), (-0.2, 0.0)):
+        calls = []
 
-            def residual(u, calls=calls, target=target):
-                calls.append(u)
-                return np.array([np.exp(u) - np.exp(target), 0.1 * u, np.tanh(9 * u)])
+        def residual(change, u, calls=calls, target=target):
+            calls.append(u)
+            return np.array([np.exp(u) - np.exp(target), 0.1 * u, np.tanh(9 * u)])
 
-            change = CandidateChange("gg", str, np.exp, lambda u: {}, (start, 0.5, 1.0))
-            best = one_change.fitted(residual, Fitted(change, start, np.inf), rounds, 1e-5, hopeless=hopeless)
-            begun = one_change.nearest_start(residual, change)
-            yield round(best.u, 6), round(best.remainder, 6), len(calls), begun.u, round(begun.remainder, 6)
-    several = [Fitted(change, float(i), remainder) for i, remainder in enumerate((3.0, 1.0, 2.0, 8.0))]
-    for number, least in ((1, 0.0), (2, 0.0), (2, 3.0), (9, 0.0)):
-        yield [one.u for one in one_change.nearest(several, number, least)], one_change.nearest([], number, least)
-        yield [one.u for one in one_change.alike(several, lambda one: one.remainder, float(number), least)]
+        change = CandidateChange("gg", str, np.exp, lambda u: {}, (start, 0.5, 1.0))
+        best = one_change.fitted(residual, Fitted(change, start))
+        (begun,) = one_change.nearest(residual, [change], 1, 0.0, 0.0)
+        yield round(best.u, 6), round(best.remainder, 6), len(calls), begun.u, round(begun.remainder, 6)
+    remainders = {"a": 3.0, "b": 1.0, "c": 2.0, "d": 8.0}
+    changes = [fixed(name, "", {}) for name in remainders]
+    for number, least, most in ((1, 0.0, 9.0), (2, 0.0, 9.0), (1, 3.0, 9.0), (9, 0.0, 2.0)):
+        found = one_change.nearest(lambda change, u: np.array([remainders[change.id]]), changes, number, least, most)
+        yield [one.id for one in found]
 
 
 def readings_of_rows():

@@ -167,7 +167,8 @@ def test_what_a_base_with_mass_leaves_is_small_beside_another_law(monkeypatch):
     """A wave that no candidate has: up to a hundredth of the motion, and to 2 % of what other habits leave."""
     monkeypatch.setattr(Formula, "explanations", lambda search: [])
     base = made(Habits("consistent", weight=1.0, softness=0.003).values(SCENE))
-    wave = np.sin(0.7 * np.arange(STEPS)) * np.max(np.abs(base), axis=1, keepdims=True) * math.sqrt(2)
+    wave = np.sin(0.7 * np.arange(STEPS))
+    wave = wave / np.linalg.norm(wave) * np.linalg.norm(base, axis=1, keepdims=True)
     for size, others_left, causes in (
         (0.5e-3, math.inf, ["base-compliance", "own-weight"]),
         (0.5e-3, 0.03, ["base-compliance", "own-weight"]),

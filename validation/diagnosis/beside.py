@@ -14,10 +14,10 @@ to the horizon, and if the rows of every other cause, and those of the scene, ar
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
-from typing import Any, ClassVar, TypeAlias
+from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 
@@ -26,14 +26,11 @@ from validation.diagnosis.answer import Answer
 from validation.diagnosis.causes import CAUSES, UNEXPLAINED, all_benign
 from validation.diagnosis.constants import (
     ARITHMETIC,
-    CHANGE,
     CLEARLY,
     FAINT,
     FARTHER,
     MOST_ALIKE,
-    NUDGE,
     ORDER,
-    ROUNDS,
     SAME_NUMBER,
     UNITS,
     WINDOW,
@@ -41,67 +38,27 @@ from validation.diagnosis.constants import (
 from validation.diagnosis.evidence import Departure, Stage
 from validation.diagnosis.fits.bar import last_digits, norm, outlying, spread_of_most, white
 from validation.diagnosis.numbers import CandidateChange, Values
-from validation.diagnosis.one_change import Fitted, fitted, nearest, nearest_start
-from validation.diagnosis.reading import Foreign
-from validation.diagnosis.readings import Reading, words_of_slips
+from validation.diagnosis.one_change import STARTS, Fitted, fitted, nearest, of_scene, run_of
+from validation.diagnosis.reading import Foreign, steppings
+from validation.diagnosis.readings import Reading, slips, without_slips, words_of_slips
 from validation.diagnosis.schemes import scheme_numbers
 from validation.diagnosis.variant import own_scheme
 from validation.errors import InputError
-from validation.metrics.contact import AGREED
+from validation.metrics.contact import AGREED, SHIFT
 from validation.metrics.values import largest
 from validation.runs.history import PRESSURE, Array
 from validation.runs.numbers import ROUNDING, significant
 from validation.scenes.scene import Scene
-from validation.solvers.contract import Role
-from validation.solvers.registry import by_role
-
-Candidate: TypeAlias = CandidateChange[Values]
+from validation.solvers.contract import Role, Solver
+from validation.solvers.registry import by_role, get_solver
 
 FARTHEST = 1 / ROUNDING  # times what may remain: a run that fails is no nearer than that
-LARGEST = math.log(CLEARLY * max(UNITS))  # of a factor that a number may be wrong by
-PATIENCE = 2  # groups of rows that every candidate is fitted to
-PURSUED = 7  # candidates of a slow scene that are fitted, the nearest along their slope
-POWERS = (-2.0, -1.0, -0.5, 0.5, 1.0, 2.0)  # given: by which numbers of one product stand for each other
+PURSUED = 7  # candidates that are fitted, the nearest along their slope
 NOISY = 4 * ORDER  # rows from which on noise is told from a shape by all lags
+Search = TypeVar("Search", bound="SceneSearch")
 
 
-@dataclass(frozen=True, eq=False)
-class RunExplanation:
-    """A candidate at its best number, with what its run leaves."""
-
-    candidate: Fitted[Values]
-    ratio: float  # of what it leaves to what may remain, in the worst row [1]
-    left: float  # root mean square over the largest value, of the worst column [1]
-    is_noise: bool = False  # whether that is more than digits, but has no shape
-
-    @property
-    def explains(self) -> bool:
-        """Whether digits or noise are all that remains."""
-        return self.ratio <= 1 or self.is_noise
-
-    @property
-    def id(self) -> str:
-        """Of the cause."""
-        return self.candidate.change.id
-
-    @property
-    def value(self) -> float | None:
-        """The number of the cause, None where it has none."""
-        number = self.candidate.change.value(self.candidate.u)
-        return None if math.isnan(number) else significant(number, 6)
-
-    @property
-    def values(self) -> Values:
-        """What it changes."""
-        return self.candidate.change.changed(self.candidate.u)
-
-    @property
-    def words(self) -> str:
-        """The cause in words."""
-        return self.candidate.change.words(self.value or 0.0)
-
-
-def rank(explanation: RunExplanation) -> tuple[bool, float]:
+def rank(explanation: Fitted) -> tuple[bool, float]:
     """Order explanations: those that explain come first, then what leaves least."""
     return not explanation.explains, explanation.left
 
@@ -118,19 +75,19 @@ class SceneSearch:
 
     NAMES: ClassVar[tuple[str, ...]]  # of the columns, the displacement first
     WOULD_TELL: ClassVar[str]  # a further scene that tells causes apart
-    is_slow = False  # whether a run takes so long that few candidates are fitted
-    patience = PATIENCE
     model = ""  # name of the solver whose runs they are, where it is another one than `dda`
     model_words = ""
 
-    scene: Scene  # at the steps of the history
+    scene: Scene  # from then on at the steps of the history
     reading: Reading
+    solver: Solver = field(default_factory=lambda: get_solver(by_role(Role.JUDGED)[0]))
     recorded: Array = field(init=False)  # columns of the history, (columns, rows)
     scene_run: Array = field(init=False)  # columns of the scene's own run at all rows
     allowed: Array = field(init=False)  # what may remain, (columns, rows that can be judged)
 
     def __post_init__(self) -> None:
         """Begin with the scene's own run."""
+        self.scene = self.reading.scene_of(self.scene)
         self.recorded = self.reading.recorded
         scene_run = self.run({}, self.recorded.shape[1])
         if scene_run is None:
@@ -146,19 +103,34 @@ class SceneSearch:
 
     # ---- of a kind of scene ----
 
-    def candidates(self) -> Iterator[Candidate]:
+    def candidates(self) -> Iterator[CandidateChange]:
         """Yield everything that may be changed in the scene, one thing at a time."""
-        raise NotImplementedError
+        return of_scene(self.scene, (*STARTS, *UNITS))
 
     def solved(self, values: Values, steps: int, is_shifted: bool) -> Array | None:
         """Return the columns of a change at all of its own steps, (columns, steps); None if there is no such run.
 
-        A shifted run has a number larger by `SHIFT`, as rounding makes it in another code.
+        A shifted run has springs and friction larger by `SHIFT`, as rounding makes numbers in another code.
         """
-        raise NotImplementedError
+        if is_shifted:
+            c = self.scene.with_values(values).contact
+            shifted = {"stiffness": c.stiffness, "shear_stiffness": c.shear, "friction": c.friction}
+            values = values | {f"contact.{key}": number * (1 + SHIFT) for key, number in shifted.items() if number}
+        return self.columns(values, steps, *self.NAMES)
+
+    def columns(self, values: Values, steps: int, *names: str) -> Array | None:
+        """Return columns of the first steps of a run by the suite; None where there is no such run."""
+        asked = {"time.steps": steps, "run.columns": names, "run.solvers": [self.solver.name]}
+        history = run_of(self.scene, values | asked, self.solver.name)
+        return None if history is None else np.array([history.columns[name] for name in names])
+
+    @property
+    def notes(self) -> list[str]:
+        """What there is to know beside a verdict."""
+        return []
 
     @cached_property
-    def changes(self) -> list[Candidate]:
+    def changes(self) -> list[CandidateChange]:
         """The candidates, each of them once."""
         return list(self.candidates())
 
@@ -224,7 +196,7 @@ class SceneSearch:
             return False
         if not len(self.departing) or self.is_noise(self.scene_run):
             return True
-        return max(self.misfits(self.scene_run)) <= tolerance
+        return self.left(self.scene_run) <= tolerance
 
     def misfits(self, columns: Array) -> list[float]:
         """Return the relative L2 difference of every column up to the horizon [-]."""
@@ -234,15 +206,11 @@ class SceneSearch:
         return [float(gap / size) if size else 0.0 for gap, size in zip(apart, sizes, strict=True)]
 
     def left(self, columns: Array) -> float:
-        """Return what columns leave up to the horizon: root mean square over the largest value, of the worst column.
+        """Return what columns leave up to the horizon: the relative L2 difference of the worst column [-].
 
         Infinite where the horizon comes before the first row.
         """
-        if not self.rows:
-            return math.inf
-        recorded = self.recorded[:, : self.rows]
-        sizes = np.maximum(np.max(np.abs(recorded), axis=1), np.finfo(float).tiny)
-        return float(np.max(np.sqrt(np.mean((recorded - columns[:, : self.rows]) ** 2, axis=1)) / sizes))
+        return max(self.misfits(columns)) if self.rows else math.inf
 
     def departure(self, verdict: RunVerdict) -> Departure | None:
         """Return the first row that is not the scene's own, and how the displacement differs most."""
@@ -254,126 +222,100 @@ class SceneSearch:
 
     # ---- the search ----
 
-    def explanations(self, begun: Sequence[Fitted[Values]] = ()) -> list[RunExplanation]:
+    def explanations(self, begun: Sequence[Fitted] = ()) -> list[Fitted]:
         """Return all candidates that were pursued to the last row, the one that leaves least first.
 
-        They are those `begun`, with numbers to begin from, where another search has found which can be meant.
+        They are those `begun`, where another search has found which can be meant, else those that come nearest to the
+        first rows along their slope.
         """
         departing = self.departing
         if len(departing) < ORDER or largest(self.over(self.scene_run, self.rows)) <= CLEARLY:
             return []
-        groups = [min(self.rows, int(departing[0]) + WINDOW)]  # of rows, twice as many from group to group
+        # of rows, twice as many from group to group; in fewer at first noise hides which changes come near
+        groups = [min(self.rows, int(departing[0]) + 2 * WINDOW)]
         while groups[-1] < self.rows:
             groups.append(min(self.rows, 2 * groups[-1]))
-        candidates = list(begun) or [Fitted(change, 0.0, math.inf) for change in self.changes]
-        for number, rows in enumerate(groups):
-            # what remains if every row leaves as much as an explanation never may
-            near = CLEARLY * math.sqrt(rows * len(self.allowed))
-            candidates = self._fitted(candidates, rows, number, near)
-            if number + 1 >= self.patience:
-                bar = max(norm(self.over(self.scene_run, rows)) / FARTHER, near)
-                candidates = [candidate for candidate in candidates if candidate.remainder <= bar]
-        # a factor beyond is forgotten, or rigid, which candidates of their own say
-        sensible = [candidate for candidate in candidates if abs(candidate.u) <= LARGEST]
-        explanations = sorted(map(self.judged, sensible), key=rank)
-        explanations = [each for each in explanations if each.ratio > CLEARLY or self._is_determined(each.candidate)]
-        if explanations and explanations[0].explains and explanations[0].candidate.change.starts:
-            explanations += self._relatives(explanations, groups[0])
-        return sorted(explanations, key=rank)
+        first = groups[0]
+        residual = partial(self._residual, first)
+        candidates = begun or nearest(residual, self.changes, PURSUED, self._near(first), self._bar(first))
+        for rows in groups:
+            pursued = [fitted(partial(self._residual, rows), candidate) for candidate in candidates]
+            candidates = [candidate for candidate in pursued if candidate.remainder <= self._bar(rows)]
+        return sorted((self.judged(candidate) for candidate in candidates if candidate.is_sensible), key=rank)
 
-    def alike(self, explanations: Sequence[RunExplanation]) -> list[RunExplanation]:
+    def _residual(self, rows: int, change: CandidateChange, u: float) -> Array:
+        """Return what a candidate leaves of the first rows over what may remain."""
+        return self.over(self.run(change.changed(u), rows), rows).ravel()
+
+    def _bar(self, rows: int) -> float:
+        """Return the norm of what a candidate may leave of the first rows and is pursued."""
+        return max(norm(self.over(self.scene_run, rows)) / FARTHER, self._near(rows))
+
+    def _near(self, rows: int) -> float:
+        """Return the norm of what remains if every row leaves as much as an explanation never may."""
+        return CLEARLY * math.sqrt(rows * len(self.allowed))
+
+    def alike(self, explanations: Sequence[Fitted]) -> list[Fitted]:
         """Return the explanations that the rows cannot tell apart, the best first; none if nothing explains."""
         if not explanations or not explanations[0].explains:
             return []
         bar = FARTHER * explanations[0].left if explanations[0].is_noise else 0.0
-        listed: list[RunExplanation] = []
-        for each in sorted(explanations, key=lambda each: (bool(each.candidate.change.starts), each.left)):
+        listed: list[Fitted] = []
+        for each in sorted(explanations, key=lambda each: (bool(each.change.starts), each.left)):
             # what a mesh leaves has a shape, with another cause as well; noise has none
             is_near = each.left <= bar and (each.is_noise or bool(self.model))
             if (each.ratio <= CLEARLY or is_near) and not any(_is_same(each, other) for other in listed):
                 listed.append(each)
         return sorted(listed, key=rank)
 
-    def as_dict(self, explanation: RunExplanation) -> dict[str, Any]:
+    def as_dict(self, explanation: Fitted) -> dict[str, Any]:
         """Return an explanation as one of several that give the same rows."""
         cause = CAUSES.get(explanation.id)
         further = (cause and (cause.of_columns or cause.further_scene)) or self.WOULD_TELL
         values = {} if explanation.value is None else {explanation.id: explanation.value}
         return {"causes": [explanation.id], "values": values, "further_scene": further}
 
-    def judged(self, candidate: Fitted[Values]) -> RunExplanation:
+    def judged(self, candidate: Fitted) -> Fitted:
         """Return a candidate with what it leaves of the rows up to its own horizon."""
-        values = candidate.change.changed(candidate.u)
+        values = candidate.values
         columns = self.run(values, self.rows)
         if columns is None:
-            return RunExplanation(candidate, FARTHEST, FARTHEST)
+            return replace(candidate, ratio=FARTHEST, left=FARTHEST)
         spread = self.spread(values, columns)
         rows = int(np.count_nonzero(np.all(np.isfinite(spread), axis=0)))
         ratio = largest(self.over(columns, rows, spread[:, :rows]))
-        return RunExplanation(candidate, ratio, self.left(columns), ratio > 1 and self.is_noise(columns))
-
-    def _relatives(self, explanations: Sequence[RunExplanation], rows: int) -> list[RunExplanation]:
-        """Return what gives the rows of the best number by a power of its factor, and was not found by a fit.
-
-        Equations of motion have numbers in products only: a fit that ends elsewhere must not make a cause unique.
-        """
-        at_hand = {id(explanation.candidate.change) for explanation in explanations if explanation.ratio <= CLEARLY}
-        further = []
-        for change in self.changes:
-            if id(change) in at_hand or not change.starts:
-                continue
-            for power in POWERS:
-                u = power * explanations[0].candidate.u
-                if largest(self.over(self.run(change.changed(u), rows), rows)) <= CLEARLY:
-                    further.append(self.judged(Fitted(change, u, 0.0)))
-        return further
-
-    def _fitted(
-        self, candidates: Sequence[Fitted[Values]], rows: int, number: int, near: float
-    ) -> list[Fitted[Values]]:
-        """Return candidates at their best numbers in the first rows, of slow scenes the nearest few."""
-
-        def residual(change: Candidate, u: float) -> Array:
-            return self.over(self.run(change.changed(u), rows), rows).ravel()
-
-        def at_best(candidate: Fitted[Values]) -> Fitted[Values]:
-            of_change = partial(residual, candidate.change)
-            if not candidate.change.starts:
-                return nearest_start(of_change, candidate.change)
-            if number or self.is_slow:
-                best = fitted(of_change, candidate, ROUNDS, NUDGE, ROUNDING)
-                if best.remainder <= near or number >= PATIENCE or self.is_slow:
-                    return best
-            return fitted(of_change, nearest_start(of_change, candidate.change), ROUNDS, NUDGE, ROUNDING)
-
-        if self.is_slow and not number:
-            begun = [
-                each if math.isfinite(each.remainder) else nearest_start(partial(residual, each.change), each.change)
-                for each in candidates
-            ]
-            candidates = nearest(begun, PURSUED, near)
-        return [at_best(candidate) for candidate in candidates]
-
-    def _is_determined(self, candidate: Fitted[Values]) -> bool:
-        """Whether some row changes with a candidate's number, where it has one."""
-        if not candidate.change.starts:
-            return True
-        runs = [self.run(candidate.change.changed(candidate.u + u), self.rows) for u in (0.0, -CHANGE, CHANGE)]
-        if any(run is None for run in runs):
-            return True
-        shares = [self.over(run, self.rows) for run in runs]
-        return all(largest(share - shares[0]) > 1 for share in shares[1:])
+        is_noise = ratio > 1 and self.is_noise(columns)
+        return replace(candidate, ratio=ratio, left=self.left(columns), is_noise=is_noise)
 
 
-def _is_same(first: RunExplanation, second: RunExplanation) -> bool:
+def _is_same(first: Fitted, second: Fitted) -> bool:
     """Whether two explanations are one: a number fitted to that of a plain change, or either start."""
     if first.id != second.id:
         return False
     if first.id == "scheme":
         return all(first.values[key] == second.values[key] for key in ("time.alpha", "time.delta"))
-    if first.value is None or second.value is None or second.candidate.change.starts:
+    if first.value is None or second.value is None or second.change.starts:
         return False
     return abs(first.value - second.value) <= SAME_NUMBER * max(1.0, abs(second.value))
+
+
+def searches_of(scene: Scene, foreign: Foreign, search: Callable[[Scene, Reading], Search]) -> list[Search]:
+    """Return the ways to read the steps, signs and units of a history, each beside the scene's own run.
+
+    Raises
+    ------
+    InputError
+        The times are not uniform, or the scene does not run at the steps of the history.
+    """
+    searches = []
+    for stepping in steppings(foreign, scene.time.step):
+        if np.ptp(stepping.steps) == 0:
+            run = search(scene, without_slips(foreign, stepping)).scene_run
+            read = slips(foreign, stepping, run[0], run[-1], furthest=math.inf)
+            searches += [search(scene, reading) for reading in read]
+    if not searches:
+        raise InputError("the times of the history are not uniform, which this scene needs", source=scene.name)
+    return searches
 
 
 # ---- the answer ----
@@ -399,11 +341,11 @@ class RunVerdict:
 
     @property
     def left(self) -> float:
-        """What that run leaves over the largest value, of the worst column [-]."""
+        """The relative L2 difference that this run leaves of the worst column [-]."""
         return self.search.left(self.columns)
 
 
-def verdict_of(search: SceneSearch, explanations: Sequence[RunExplanation]) -> RunVerdict:
+def verdict_of(search: SceneSearch, explanations: Sequence[Fitted]) -> RunVerdict:
     """Return what one thing changed explains, if it is certain which."""
     if not explanations:
         return RunVerdict(search, False)
@@ -414,9 +356,7 @@ def verdict_of(search: SceneSearch, explanations: Sequence[RunExplanation]) -> R
     return RunVerdict(search, is_certain, {best.id: best.value}, {best.id: best.words}, best.values, listed)
 
 
-def answer_of(
-    foreign: Foreign, verdict: RunVerdict, more_stages: Sequence[Stage] = (), notes: Sequence[str] = ()
-) -> Answer:
+def answer_of(foreign: Foreign, verdict: RunVerdict, more_stages: Sequence[Stage] = ()) -> Answer:
     """Return a verdict as the answer of `compare`."""
     search = verdict.search
     reading = search.reading
@@ -426,24 +366,20 @@ def answer_of(
     unexplained = 0.0 if explained else significant(min(misfit / scene_misfit, 1.0) if scene_misfit else 1.0, 4)
     ids = [*reading.slips, *verdict.causes] if explained else [UNEXPLAINED]
     departure = None if all_benign(ids) else search.departure(verdict)
-    own = own_scheme(search.scene)
-    scheme = scheme_numbers(own)
-    stated = sentences.scheme_of(own)
+    of_time = {key: value for key, value in verdict.best.items() if explained and key.startswith("time.")}
+    scheme_of_best = own_scheme(search.scene.with_values(of_time))
+    scheme = scheme_numbers(scheme_of_best)
+    stated = sentences.scheme_of(scheme_of_best)
     values = {name: significant(value, 6) for name, value in verdict.causes.items() if value is not None}
     words = words_of_slips(reading.corrected)
     if explained:
         words |= {name: verdict.words[name] for name in verdict.causes}
-        if {"scheme", "start"} & verdict.causes.keys():
-            scheme |= {name: verdict.best[f"time.{name}"] for name in ("alpha", "delta")}
-        scheme["gg"] = verdict.best.get("time.gg", scheme["gg"])
         if "scheme" in verdict.causes:
-            words["scheme"] = f"a different scheme from the scene's {stated}"
-            stated = verdict.words["scheme"]
+            stated = words["scheme"]
+            words["scheme"] = f"a different scheme from the scene's {sentences.scheme_of(own_scheme(search.scene))}"
         elif "exact-in-time" in verdict.causes:
-            scheme = dict.fromkeys(("alpha", "delta", "gg"))
+            scheme = dict.fromkeys(scheme)
             stated = sentences.scheme_words(None, None, None)
-        else:
-            stated = sentences.scheme_of(replace(own, gg=scheme["gg"]))
     nearest_causes: dict[str, Any] | None = None
     if not explained and not verdict.alike and verdict.causes:
         nearest_causes = {"causes": list(verdict.causes), "values": values, "left": unexplained}
@@ -461,13 +397,12 @@ def answer_of(
     (judged_solver, *_) = by_role(Role.JUDGED)
     curves = {"the file": search.recorded, judged_solver: search.scene_run, "best": columns}
     has_pressure = PRESSURE in search.NAMES[: len(columns)]
-    horizon = [_horizon(search)] if search.rows < search.scene_run.shape[1] else []
     return Answer(
         sentence=sentence,
         causes=ids,
         scheme=scheme,
         departure=departure,
-        notes=(*foreign.notes, *reading.notes, *horizon, *notes),
+        notes=(*foreign.notes, *reading.notes, *search.notes),
         misfit=misfit,
         curves={name: (search.time, run[0]) for name, run in curves.items()},
         values=values if explained else {},
@@ -501,10 +436,6 @@ def _stages(search: SceneSearch) -> list[Stage]:
         stages.append(evidence.column_stage(name, agrees, misfit, since, {"first_row": first}))
     if search.rows < search.scene_run.shape[1]:
         time = float(search.time[max(search.rows - 1, 0)])
-        stages.append(Stage("horizon", None, _horizon(search), {"time": time, "rows": float(search.rows)}))
+        words = f"two correct codes agree up to t = {time:.6g} s only; later rows are not judged"
+        stages.append(Stage("horizon", None, words, {"time": time, "rows": float(search.rows)}))
     return stages
-
-
-def _horizon(search: SceneSearch) -> str:
-    time = search.time[max(search.rows - 1, 0)]
-    return f"two correct codes agree up to t = {time:.6g} s only; later rows are not judged"

@@ -5,19 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from validation.diagnosis import families
 from validation.diagnosis.answer import Answer
-from validation.diagnosis.beside import Candidate, RunVerdict, SceneSearch, answer_of, verdict_of
-from validation.diagnosis.constants import DISCOUNTS, ROUNDS, UNBOUNDED, UNITS
-from validation.diagnosis.numbers import Values, contacts, fixed, layers, places
-from validation.diagnosis.one_change import of_discount, of_numbers, of_schemes
-from validation.diagnosis.other_solvers import STARTS
-from validation.diagnosis.reading import Foreign, Stepping, steppings
-from validation.diagnosis.readings import slips, without_slips
+from validation.diagnosis.beside import RunVerdict, SceneSearch, answer_of, searches_of, verdict_of
+from validation.diagnosis.constants import ROUNDS, UNBOUNDED
+from validation.diagnosis.numbers import CandidateChange, Values, contacts, fixed, layers, places
+from validation.diagnosis.reading import Foreign
 from validation.errors import InputError
 from validation.metrics.contact import SHIFT
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
@@ -37,18 +35,7 @@ BONDED = "bonded"  # among the values of a change, no key of scenes: contacts ca
 # ---- candidates ----
 
 
-def of_scene(scene: Scene) -> Iterator[Candidate]:
-    """Yield everything that may be changed in a scene with such a column."""
-    yield from of_schemes(scene)
-    for parts in PARTS:
-        words = f"the program makes {parts} steps in one of the scene's"
-        yield fixed("substeps", words, {"time.step": scene.time.step / parts}, float(parts))
-    yield from laws(scene)
-    yield from of_numbers(scene, (*STARTS, *UNITS), units=False)
-    yield of_discount(scene, DISCOUNTS)
-
-
-def laws(scene: Scene) -> Iterator[Candidate]:
+def laws(scene: Scene) -> Iterator[CandidateChange]:
     """Yield what a program may have forgotten, reversed, or put in place of the contacts' law."""
     column = column_of(scene)
     stated = scene.definition()
@@ -66,16 +53,16 @@ def laws(scene: Scene) -> Iterator[Candidate]:
             words = "the column starts at rest under its weight, not unstrained"
             yield fixed("settled", words, {"column.settled": True})
     for place, where in places(scene, "gap").items():
-        gap = contacts("gap", place)
-        yield fixed("gap-factor", f"the gap of {where} is forgotten", gap(scene, 0.0), 0.0)
+        gap = partial(contacts, scene, "gap", place=place)
+        yield fixed("gap-factor", f"the gap of {where} is forgotten", gap(0.0), 0.0)
         words = f"{where} is never reached: it is not there, or its gap is wide"
-        yield fixed("contact-missing", words, gap(scene, UNBOUNDED))
+        yield fixed("contact-missing", words, gap(UNBOUNDED))
     if column.law == "unilateral":
         yield fixed("contact-locked", "the contacts carry tension", {BONDED: True})
     elif any(math.isfinite(contact.strength) for contact in column.contacts):
         yield fixed("no-slip", "the contacts do not slip", {BONDED: True})
-        free = contacts("strength")(scene, ROUNDING)
-        free |= contacts("friction")(scene.with_values(free), ROUNDING)
+        free = contacts(scene, "strength", ROUNDING)
+        free |= contacts(scene.with_values(free), "friction", ROUNDING)
         yield fixed("no-friction", "there is no friction", free)
     if any(math.isfinite(contact.stiffness) for contact in column.contacts):
         joints = stated["column"].get("joint", [])
@@ -88,7 +75,7 @@ def laws(scene: Scene) -> Iterator[Candidate]:
     if reversed_input:
         yield fixed("load-factor", "the input acts the other way", reversed_input, -1.0)
     for words, factor in (("reversed", -1.0), ("forgotten", 0.0)) if has_velocity else ():
-        yield fixed("velocity-factor", f"the starting velocity is {words}", layers("velocity")(scene, factor), factor)
+        yield fixed("velocity-factor", f"the starting velocity is {words}", layers(scene, "velocity", factor), factor)
 
 
 # ---- runs ----
@@ -100,9 +87,17 @@ class ColumnSearch(SceneSearch):
     NAMES = (DISPLACEMENT, PRESSURE)
     WOULD_TELL = "the rows up to the first switch with every step, or a run with one contact"
 
-    def candidates(self) -> Iterator[Candidate]:
-        """Yield everything that may be changed in the scene."""
-        return of_scene(self.scene)
+    def __post_init__(self) -> None:
+        """Keep the scene as it was asked."""
+        self.asked = self.scene
+        super().__post_init__()
+
+    def candidates(self) -> Iterator[CandidateChange]:
+        """Yield everything that may be changed in the scene, and steps that are parts of its own."""
+        yield from super().candidates()
+        for parts in PARTS:
+            words = f"the program makes {parts} steps in one of the scene's"
+            yield fixed("substeps", words, {"time.step": self.scene.time.step / parts}, float(parts))
 
     def solved(self, values: Values, steps: int, is_shifted: bool) -> Array | None:
         """Return displacement and pressure of a change, densities larger by `SHIFT` where it is shifted."""
@@ -120,7 +115,7 @@ class ColumnSearch(SceneSearch):
         try:
             scene = self.scene.with_values({key: value for key, value in values.items() if key != BONDED})
             if is_shifted:
-                scene = scene.with_values(layers("density")(scene, 1 + SHIFT))
+                scene = scene.with_values(layers(scene, "density", 1 + SHIFT))
             section = column_of(scene)
             column = dda_column(section)
             if is_bonded:
@@ -133,70 +128,50 @@ class ColumnSearch(SceneSearch):
             return None
         return result if len(result.time) == steps else None
 
+    @property
+    def notes(self) -> list[str]:
+        """What there is to know of limits of solves."""
+        notes: list[str] = []
+        steps = len(self.reading.stepping.steps)
+        result = self.result({}, steps + 1)
+        if result is None:
+            return notes
+        limit = column_of(self.scene).solve_limit
+        solves = result.step_solves
+        if limit and np.max(solves[:steps]) > limit:
+            step = np.argmax(solves > limit) + 1
+            notes.append(f"the scene's own limit of {limit} solves ends its run at step {step}: it was left out")
+        needed = int(solves[-1])
+        is_first = needed > max(int(np.max(solves[:steps])), LEAST_LIMIT)
+        time = self.asked.time
+        if is_first and self.scene.time.step == time.step and steps < time.steps and not len(self.departing):
+            notes.append(
+                f"the file ends at step {steps} of {time.steps}; the next step is the first that needs {needed} "
+                f"solves of the open-close iteration: a limit of {needed - 1} ends a run there"
+            )
+        return notes
+
 
 # ---- the verdict ----
 
 
 def compare_column(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
-    """Judge a history against a scene with a column whose contacts open or slip, as `validation.diagnosis.compare`.
-
-    Raises
-    ------
-    InputError
-        The times are not uniform, or the scene does not run at the steps of the history.
-    """
-    uniform = [stepping for stepping in steppings(foreign, scene.time.step) if np.ptp(stepping.steps) == 0]
-    if not uniform:
-        raise InputError("the times of the history are not uniform, which a column needs", source=scene.name)
-    searches = [search for stepping in uniform for search in searches_of(scene, foreign, stepping)]
+    """Judge a history against a scene with a column whose contacts open or slip, as `validation.diagnosis.compare`."""
+    searches = searches_of(scene, foreign, ColumnSearch)
     fewest = min(len(search.reading.corrected) for search in searches)
     plain = [search for search in searches if len(search.reading.corrected) == fewest]
     own = [search for search in searches if search.is_scene(tolerance)]
     as_read = next((search for search in own if search in plain), None)
     if as_read is not None:
-        verdict = RunVerdict(as_read, True)
-    else:
-        verdicts = [verdict_of(search, search.explanations()) for search in plain]
-        verdict = next((verdict for verdict in verdicts if verdict.explained or verdict.alike), verdicts[0])
-        if own and not (verdict.explained or verdict.alike):
-            verdict = RunVerdict(own[0], True)
-        elif own:
-            values = {name: value for name, value in verdict.causes.items() if value is not None}
-            further = {"further_scene": families.BESIDE_GRAVITY}
-            alike = verdict.alike or [{"causes": list(verdict.causes), "values": values} | further]
-            of_reading = {"causes": list(own[0].reading.slips), "values": {}} | further
-            verdict = replace(verdict, explained=False, alike=[*alike, of_reading])
-    (search,) = (search for search in searches if search is verdict.search)
-    return answer_of(foreign, verdict, notes=_notes(search, scene))
-
-
-def searches_of(scene: Scene, foreign: Foreign, stepping: Stepping) -> list[ColumnSearch]:
-    """Return the ways to read signs and units, each beside the scene's own run."""
-    reading = without_slips(foreign, stepping)
-    stepped = reading.scene_of(scene)
-    scene_run = ColumnSearch(stepped, reading).scene_run
-    readings = slips(foreign, stepping, scene_run[0], scene_run[-1], furthest=math.inf)
-    return [ColumnSearch(stepped, reading) for reading in readings]
-
-
-def _notes(search: ColumnSearch, scene: Scene) -> list[str]:
-    """Return what there is to know of limits of solves beside the verdict."""
-    notes: list[str] = []
-    steps = len(search.reading.stepping.steps)
-    result = search.result({}, steps + 1)
-    if result is None:
-        return notes
-    limit = column_of(scene).solve_limit
-    solves = result.step_solves
-    if limit and np.max(solves[:steps]) > limit:
-        step = np.argmax(solves > limit) + 1
-        notes.append(f"the scene's own limit of {limit} solves ends its run at step {step}: it was left out")
-    needed = int(solves[-1])
-    is_first = needed > max(int(np.max(solves[:steps])), LEAST_LIMIT)
-    same_step = search.reading.stepping.steps[0] == scene.time.step
-    if is_first and same_step and steps < scene.time.steps and not len(search.departing):
-        notes.append(
-            f"the file ends at step {steps} of {scene.time.steps}; the next step is the first that needs {needed} "
-            f"solves of the open-close iteration: a limit of {needed - 1} ends a run there"
-        )
-    return notes
+        return answer_of(foreign, RunVerdict(as_read, True))
+    verdicts = [verdict_of(search, search.explanations()) for search in plain]
+    verdict = next((verdict for verdict in verdicts if verdict.explained or verdict.alike), verdicts[0])
+    if own and not (verdict.explained or verdict.alike):
+        verdict = RunVerdict(own[0], True)
+    elif own:
+        values = {name: value for name, value in verdict.causes.items() if value is not None}
+        further = {"further_scene": families.BESIDE_GRAVITY}
+        alike = verdict.alike or [{"causes": list(verdict.causes), "values": values} | further]
+        of_reading = {"causes": list(own[0].reading.slips), "values": {}} | further
+        verdict = replace(verdict, explained=False, alike=[*alike, of_reading])
+    return answer_of(foreign, verdict)

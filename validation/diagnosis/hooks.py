@@ -31,7 +31,7 @@ class DiagnosisHooks(Hooks):
         """Yield the densities of layers, where they differ, each by itself."""
         yield from ()
 
-    def laws(self, scene: Scene) -> Iterator[CandidateChange[Values]]:
+    def laws(self, scene: Scene) -> Iterator[CandidateChange]:
         """Yield the laws of contact that a program may have in place of a scene's, and what it may have forgotten."""
         yield from ()
 

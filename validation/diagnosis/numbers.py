@@ -9,9 +9,10 @@ from __future__ import annotations
 import math
 import tomllib
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import Any
 
 from validation.diagnosis.constants import UNBOUNDED
 from validation.scenes import features
@@ -19,7 +20,6 @@ from validation.scenes.scene import Scene
 
 Values = dict[str, Any]
 TABLE = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
-Change = TypeVar("Change")  # what a candidate gives
 AVERAGE: Values = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}  # given
 MORE_BLOCKS = 4  # times as many of a column in an accurate run
 EVERYWHERE, WITHOUT_JOINT = "everywhere", "without a joint"  # of a column's contacts
@@ -32,57 +32,44 @@ def springs(scene: Scene, factor: float) -> Values:
     return stiffness | ({"contact.shear_stiffness": c.shear_stiffness * factor} if c.shear_stiffness else {})
 
 
-def friction(scene: Scene, factor: float) -> Values:
-    """Return the angle of friction [deg] whose tangent is larger by a factor."""
-    return {"contact.friction": steeper(scene.contact.friction or 0.0, factor)}
-
-
 def steeper(angle: float, factor: float) -> float:
     """Return the angle [deg] whose tangent is larger by a factor."""
     return math.degrees(math.atan(factor * math.tan(math.radians(angle))))
 
 
-def layers(key: str, place: int | None = None) -> Callable[[Scene, float], Values]:
-    """Return the function that makes a datum of all layers of a column, or of one, larger by a factor."""
-
-    def changed(scene: Scene, factor: float) -> Values:
-        stated = scene.definition()["column"]["layer"]
-        values = []
-        for number, layer in enumerate(stated):
-            is_meant = layer.get(key) and place in (None, number)
-            values.append(layer | ({key: float(layer[key]) * factor} if is_meant else {}))  # or "inf"
-        return {"column.layer": values}
-
-    return changed
+def layers(scene: Scene, key: str, factor: float, place: int | None = None) -> Values:
+    """Return a datum of all layers of a column, or of one, larger by a factor."""
+    stated = scene.definition()["column"]["layer"]
+    larger = [_larger(layer, key, factor) if place in (None, number) else layer for number, layer in enumerate(stated)]
+    return {"column.layer": larger}
 
 
-def contacts(key: str, place: str = EVERYWHERE) -> Callable[[Scene, float], Values]:
-    """Return the function that makes a datum of a column's contacts, of a friction angle the tangent, larger.
+def contacts(scene: Scene, key: str, factor: float, place: str = EVERYWHERE) -> Values:
+    """Return a datum of a column's contacts, of a friction angle the tangent, larger by a factor.
 
     `key` is its name in ``[column]`` and ``[[column.joint]]``, `place` where: at all contacts, at those without a joint
     of their own, or at the height of one [m].
     """
+    column = scene.definition()["column"]
+    values: Values = {}
+    if place != WITHOUT_JOINT and column.get("joint"):
+        values["column.joint"] = [
+            _larger(joint, key, factor) if place in (EVERYWHERE, f"{joint['height']:g}") else joint
+            for joint in column["joint"]
+        ]
+    if place in (EVERYWHERE, WITHOUT_JOINT) and column.get(key):
+        values[f"column.{key}"] = _larger(column, key, factor)[key]
+    if place == EVERYWHERE and key == "stiffness" and column.get("base_stiffness"):
+        values["column.base_stiffness"] = column["base_stiffness"] * factor
+    return values
 
-    def larger(value: float | str, factor: float) -> float:  # plain data have "inf" for rigid contacts
-        return steeper(float(value), factor) if key == "friction" else float(value) * factor
 
-    def changed(scene: Scene, factor: float) -> Values:
-        column = scene.definition()["column"]
-        values: Values = {}
-        if place != WITHOUT_JOINT and column.get("joint"):
-            values["column.joint"] = [
-                joint | {key: larger(joint[key], factor)}
-                if joint.get(key) and place in (EVERYWHERE, f"{joint['height']:g}")
-                else joint
-                for joint in column["joint"]
-            ]
-        if place in (EVERYWHERE, WITHOUT_JOINT) and column.get(key):
-            values[f"column.{key}"] = larger(column[key], factor)
-        if place == EVERYWHERE and key == "stiffness" and column.get("base_stiffness"):
-            values["column.base_stiffness"] = column["base_stiffness"] * factor
-        return values
-
-    return changed
+def _larger(table: Values, key: str, factor: float) -> Values:
+    """Return a table with a datum that it has larger by a factor, of a friction angle the tangent."""
+    if not table.get(key):
+        return table
+    value = float(table[key])  # plain data have "inf" for rigid contacts
+    return table | {key: steeper(value, factor) if key.endswith("friction") else value * factor}
 
 
 def places(scene: Scene, key: str) -> dict[str, str]:
@@ -113,22 +100,18 @@ def with_more_blocks(scene: Scene) -> Values:
 
 
 @dataclass(frozen=True, eq=False)
-class CandidateChange(Generic[Change]):
+class CandidateChange:
     """One thing changed; with `starts` it has a number u that is fitted."""
 
     id: str  # of the cause
     words: Callable[[float], str]  # the sentence of the cause by its number
     value: Callable[[float], float]  # the number that people understand, of u
-    changed: Callable[[float], Change]  # what the change gives, of u
+    changed: Callable[[float], Values]  # what of the scene is so, of u
     starts: tuple[float, ...] = ()  # values of u that a fit begins from
     nudge: float = 1e-3  # of u, for the first derivative
 
-    def giving(self, changed: Callable[[float], Any]) -> CandidateChange[Any]:
-        """Return the same change with another thing that it gives."""
-        return replace(self, changed=changed)
 
-
-def fixed(name: str, words: str, values: Values, number: float = math.nan) -> CandidateChange[Values]:
+def fixed(name: str, words: str, values: Values, number: float = math.nan) -> CandidateChange:
     """Return a change without a fitted number; `number` is what it stands for, nan where there is none."""
     return CandidateChange(name, lambda _: words, lambda _: number, lambda _: values)
 
@@ -139,40 +122,42 @@ class Number:
 
     id: str
     name: str
-    changed: Callable[[Scene, float], dict[str, Any]]  # scene and factor to keys and values
+    changed: Callable[[float], Values]  # factor to keys and values
 
 
 def numbers_of_column(scene: Scene) -> Iterator[Number]:
     """Yield the numbers of a column, as `DiagnosisHooks.numbers`."""
     if any(math.isfinite(layer.young) for layer in scene.column.layer):
-        yield Number("young-factor", OF_WAVES, layers("young"))
-    yield Number("density-factor", "the density", layers("density"))
+        yield Number("young-factor", OF_WAVES, partial(layers, scene, "young"))
+    yield Number("density-factor", "the density", partial(layers, scene, "density"))
     yield from _of_contacts(scene)
     yield from _plain(scene, "input")
     if scene.column.impedance is not None:
-        yield Number("base-factor", "the impedance below the base, density times speed of the waves,", _impedance)
+        yield Number(
+            "base-factor", "the impedance below the base, density times speed of the waves,", partial(_impedance, scene)
+        )
 
 
 def numbers_of_block(scene: Scene) -> Iterator[Number]:
     """Yield the numbers of a block, as `DiagnosisHooks.numbers`."""
     yield from _plain(scene, "block", *(["turning"] if features.ROTATION in features.of(scene) else []))
-    yield Number("width-factor", "the width", lambda s, f: sized(s, f, 1.0))
-    yield Number("height-factor", "the height", lambda s, f: sized(s, 1.0, f))
+    yield Number("width-factor", "the width", lambda f: sized(scene, f, 1.0))
+    yield Number("height-factor", "the height", lambda f: sized(scene, 1.0, f))
     c = scene.contact
     if math.isfinite(c.stiffness):
-        yield Number("springs-factor", "the stiffness of the springs", springs)
+        yield Number("springs-factor", "the stiffness of the springs", partial(springs, scene))
         if c.shear_stiffness and c.friction is not None:
             key = "contact.shear_stiffness"
-            yield Number("shear-springs-factor", "the shear stiffness of the springs", lambda s, f: {key: c.shear * f})
-    if c.friction:
-        yield Number("friction-factor", "tan(phi) of friction", friction)
+            yield Number("shear-springs-factor", "the shear stiffness of the springs", lambda f: {key: c.shear * f})
 
 
 def numbers_of_layers(scene: Scene) -> Iterator[Number]:
     """Yield the densities of a column's layers, where they differ."""
     stated = scene.column.layer[:MOST_JOINTS]
     for place, _ in enumerate(stated) if len({layer.density for layer in stated}) > 1 else ():
-        yield Number("density-factor", f"the density of layer {place + 1}", layers("density", place))
+        yield Number(
+            "density-factor", f"the density of layer {place + 1}", partial(layers, scene, "density", place=place)
+        )
 
 
 OF_WAVES = "the modulus of the waves, by Young's modulus or Poisson's ratio,"
@@ -185,14 +170,13 @@ def _of_contacts(scene: Scene) -> Iterator[Number]:
     if column.law == "bonded":
         return
     if any(layer.velocity for layer in column.layer):
-        yield Number("velocity-factor", "the starting velocity", layers("velocity"))
+        yield Number("velocity-factor", "the starting velocity", partial(layers, scene, "velocity"))
     if column.gravity and column.law == "unilateral":  # in shear gravity is in the strengths by friction alone
-        gravity = column.gravity
-        yield Number("gravity-factor", "gravity", lambda s, f: {"column.gravity": gravity * f})
+        yield Number("gravity-factor", "gravity", lambda f: {"column.gravity": column.gravity * f})
     yield from _plain(scene, "input_of_contacts")
     for key, (cause, name) in TABLE["contacts"].items():
         for place, words in places(scene, key).items():
-            yield Number(cause, f"{name} of {words}", contacts(key, place))
+            yield Number(cause, f"{name} of {words}", partial(contacts, scene, key, place=place))
 
 
 def _is_number(value: float | None) -> bool:
@@ -211,7 +195,7 @@ def _plain(scene: Scene, *tables: str) -> Iterator[Number]:
     for key, (cause, name) in rows.items():
         value = _stated(scene, key)
         if isinstance(value, int | float) and value:
-            yield Number(cause, name, lambda s, f, key=key, value=value: {key: value * f})  # type: ignore[misc]
+            yield Number(cause, name, partial(_larger, {key: value}, key))
 
 
 def _impedance(scene: Scene, factor: float) -> dict[str, Any]:
@@ -220,7 +204,7 @@ def _impedance(scene: Scene, factor: float) -> dict[str, Any]:
     return {"column.base_density": base["base_density"] * (factor if "base_speed" in base else factor**2)}
 
 
-def laws(scene: Scene) -> Iterator[CandidateChange[Values]]:
+def laws(scene: Scene) -> Iterator[CandidateChange]:
     """Yield the laws of contact that a program may have in place of a scene's, and what it may have forgotten."""
     if features.ROTATION in features.of(scene):
         return

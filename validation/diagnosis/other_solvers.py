@@ -8,30 +8,25 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
-
-import numpy as np
+from functools import partial
 
 from validation.diagnosis import evidence
 from validation.diagnosis.answer import Answer
-from validation.diagnosis.beside import Candidate, RunExplanation, RunVerdict, SceneSearch, answer_of, verdict_of
+from validation.diagnosis.beside import RunVerdict, SceneSearch, answer_of, searches_of, verdict_of
 from validation.diagnosis.causes import BENIGN_COMPLIANCE, words_of
-from validation.diagnosis.constants import CLEARLY, DISCOUNTS, SLIGHT
+from validation.diagnosis.constants import SLIGHT
 from validation.diagnosis.evidence import Departure
-from validation.diagnosis.fits.bar import Bar
-from validation.diagnosis.moves import FACTORS
-from validation.diagnosis.numbers import Values
-from validation.diagnosis.one_change import Fitted, of_discount, of_numbers, of_schemes
-from validation.diagnosis.reading import Foreign, steppings
-from validation.diagnosis.readings import Reading, slips, without_slips
+from validation.diagnosis.numbers import CandidateChange
+from validation.diagnosis.one_change import STARTS, Fitted, of_scene
+from validation.diagnosis.reading import Foreign
+from validation.diagnosis.readings import Reading
 from validation.diagnosis.variant import rectangle_of
-from validation.errors import InputError
-from validation.metrics.contact import SHIFT
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.scenes.scene import Scene
 from validation.solvers.registry import get_solver
 
-CANDIDATES = {"springs-factor", "density-factor", "young-factor", "load-factor", "gg"}  # numbers that are tried
-STARTS = tuple(FACTORS[len(FACTORS) // 4 : -len(FACTORS) // 4])  # to begin from: the middle half of those of a block
+CANDIDATES = {"springs-factor", "density-factor", "young-factor", "load-factor"}  # numbers that are tried
+SCHEMES = {"scheme", "start", "gg"}
 FEW = 4  # of a slow solver every so many of the starts: a factor of three apart
 COARSE = 8  # elements a side of the mesh that finds candidates for a finer one
 MESH = 5e-3  # relative L2 that a coarse mesh leaves beside the exact bar: eight linear elements a side at 0.5 ms
@@ -48,58 +43,31 @@ class SolverSearch(SceneSearch):
     WOULD_TELL = "another time step, or another contact stiffness"
 
     def __init__(self, scene: Scene, reading: Reading, name: str) -> None:
-        self.solver = get_solver(name)
-        self.is_slow = self.solver.meshed
-        if self.is_slow:
-            self.patience = 1  # a run of a mesh is too dear for what comes no nearer in the first rows
         if name != DDA:
             self.model = name
             self.model_words = name + EXACT.get(name, "")
-        roundings = [None] * len(reading.recorded) if reading.rounding is None else list(reading.rounding)
-        self.bars = [Bar.of(values, unit) for values, unit in zip(reading.recorded, roundings, strict=True)]
-        super().__init__(reading.scene_of(scene), reading)
+        super().__init__(scene, reading, get_solver(name))
 
-    def candidates(self) -> Iterator[Candidate]:
+    def candidates(self) -> Iterator[CandidateChange]:
         """Yield schemes, where the solver has one, and single numbers."""
-        if self.solver.name != WITHOUT_SCHEME:
-            yield from of_schemes(self.scene)
-            yield of_discount(self.scene, DISCOUNTS)
-        starts = STARTS[:: FEW if self.is_slow else 1]
-        yield from (each for each in of_numbers(self.scene, starts, units=False) if each.id in CANDIDATES)
+        tried = CANDIDATES | (set() if self.solver.name == WITHOUT_SCHEME else SCHEMES)
+        changes = of_scene(self.scene, STARTS[:: FEW if self.solver.meshed else 1])
+        return (each for each in changes if each.id in tried)
 
-    def explanations(self, begun: Sequence[Fitted[Values]] = ()) -> list[RunExplanation]:
+    def explanations(self, begun: Sequence[Fitted] = ()) -> list[Fitted]:
         """Return the candidates as `SceneSearch` does; of a fine mesh those that a coarse one takes for possible."""
         mesh = self.scene.fem
         if begun or not self.solver.meshed or mesh.mesh is not None or mesh.per_side <= COARSE:
             return super().explanations(begun)
         coarse = SolverSearch(self.scene.with_values({"fem.elements": COARSE}), self.reading, self.solver.name)
-        coarse.changes = self.changes  # of numbers that have nothing to do with a mesh
-        sizes = np.maximum(np.linalg.norm(self.scene_run, axis=1), np.finfo(float).tiny)
-        error = float(np.max(np.linalg.norm(coarse.scene_run - self.scene_run, axis=1) / sizes))
-        near = [each for each in coarse.explanations() if each.explains or each.left <= CLEARLY * error]
-        return super().explanations([each.candidate for each in near]) if near else []
-
-    def solved(self, values: Values, steps: int, is_shifted: bool) -> Array | None:
-        """Return displacement and pressure of a change, springs stiffer by `SHIFT` where it is shifted."""
-        try:
-            scene = self.scene.with_values(values | {"time.steps": steps})
-            if is_shifted:
-                scene = scene.with_values({"contact.stiffness": scene.contact.stiffness * (1 + SHIFT)})
-            run = self.solver.solve(scene)
-        except InputError:  # the step lies beyond the limit of the scheme
-            return None
-        columns = np.array([run.displacement, run.contact_pressure])
-        return columns if np.all(np.isfinite(columns)) else None
+        near = coarse.explanations()
+        return super().explanations(near) if near else []
 
     def is_noise(self, columns: Array) -> bool:
-        """Whether columns leave noise of a linear motion, or beside an exact solution what a mesh does."""
+        """Whether columns leave noise, or beside an exact solution what a mesh does."""
         is_exact = self.model and not self.solver.meshed
         least = min(MESH, SLIGHT * self.left(self.scene_run)) if is_exact else 0.0
-        if self.left(columns) <= least:
-            return True
-        if self.rows < self.recorded.shape[1]:  # a run without bounds
-            return False
-        return all(bar.holds(row) for bar, row in zip(self.bars, self.recorded - columns, strict=True))
+        return self.left(columns) <= least or super().is_noise(columns)
 
     def departure(self, verdict: RunVerdict) -> Departure | None:
         """Return where a history departs: what is exact in time, from the run of `dda` under the scene's scheme."""
@@ -182,13 +150,7 @@ def _named(verdict: RunVerdict) -> RunVerdict:
 
 def judged_without_rectangle(scene: Scene, foreign: Foreign) -> Answer:
     """Return the answer for a block that is no upright rectangle, or that turns: linear models alone are tried."""
-    readings = []
-    for stepping in steppings(foreign, scene.time.step):
-        if np.ptp(stepping.steps) == 0:
-            run = get_solver(DDA).solve(without_slips(foreign, stepping).scene_of(scene))
-            readings += slips(foreign, stepping, run.displacement[stepping.rows], run.contact_pressure[stepping.rows])
-    verdict = verdict_of_solvers(scene, readings, (DDA, "fem"))
-    if verdict is None:
-        raise InputError("the times of the history are not uniform, which this scene needs", source=scene.name)
+    searches = searches_of(scene, foreign, partial(SolverSearch, name=DDA))
+    verdict = verdict_of_solvers(scene, [search.reading for search in searches], (DDA, "fem"))
     note = "the block is not an upright rectangle: opening and updated geometry are not tried"
-    return answer_of(foreign, verdict, notes=[note])
+    return answer_of(replace(foreign, notes=(*foreign.notes, note)), verdict or RunVerdict(searches[0], False))

@@ -18,15 +18,13 @@ from typing import Any
 import numpy as np
 
 from validation.diagnosis.answer import Answer
-from validation.diagnosis.beside import Candidate, RunExplanation, RunVerdict, SceneSearch, answer_of, rank, verdict_of
+from validation.diagnosis.beside import RunVerdict, SceneSearch, answer_of, rank, verdict_of
 from validation.diagnosis.causes import BENIGN_COMPLIANCE, round_factor, words_of
 from validation.diagnosis.constants import (
     ARITHMETIC,
     CHANGE,
-    DISCOUNTS,
     FAINT,
     FARTHER,
-    ORDER,
     ROUNDS,
     SEEN,
     SLIGHT,
@@ -36,21 +34,18 @@ from validation.diagnosis.constants import (
 from validation.diagnosis.evidence import Departure, Stage
 from validation.diagnosis.fits.fit import NORMAL_95
 from validation.diagnosis.moves import OF_NTDDA
-from validation.diagnosis.numbers import CandidateChange, Values, fixed, laws
-from validation.diagnosis.one_change import Fitted, of_discount, of_numbers, of_schemes
-from validation.diagnosis.other_solvers import DDA, STARTS
+from validation.diagnosis.numbers import CandidateChange, Values, fixed
+from validation.diagnosis.one_change import STARTS, Fitted
 from validation.diagnosis.reading import SIDEWAYS, Foreign, Stepping, steppings
-from validation.diagnosis.readings import NEAR_POWER, Reading, Slip, remedy_of, without_slips
+from validation.diagnosis.readings import NEAR_POWER, Slip, remedy_of, without_slips
 from validation.diagnosis.variant import GRAVITY, upright
 from validation.errors import InputError
-from validation.metrics.contact import SHIFT
 from validation.metrics.values import largest
 from validation.runs.history import DISPLACEMENT, Array
 from validation.runs.numbers import ROUNDING, share_text
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.dda import model_of
-from validation.solvers.registry import get_solver
 from validation.theory.friction import coefficient
 from validation.theory.statics import moduli, size
 
@@ -58,18 +53,10 @@ KNOWN = frozenset(
     {features.FRICTION, features.LAGGED, features.SLOPE, features.WEIGHT, features.OFF_CENTRE}
     | {features.UNILATERAL, features.DEAD_BAND}
 )
-# of habits
 STAGES = (8, 24, 60, 150)  # steps that numbers are fitted to; in the first no corner has come back to the base
 WEIGHTS = (0.0, 1.0)  # given: to begin from: none, or the block's own
 SOFTNESSES = (0.0, *map(math.log, STARTS))  # to begin from
 BANDS = (0.1, 10.0, 16)  # least, largest and number of dead bands that are tried first, over the mean penetration
-# of one number
-FACTORS = (
-    0.8,
-    0.95,
-    1.05,
-    1.25,
-)  # to begin from; a factor of one tells nothing of its own
 SPRINGS = frozenset({"springs-factor", "normal-springs-factor"})
 OF_FRICTION = frozenset({"friction-factor", "cohesion", "shear-springs-factor", "lagged-friction"})
 
@@ -152,33 +139,26 @@ class SlopeSearch(SceneSearch):
     NAMES = (DISPLACEMENT, SIDEWAYS)
     CORNERS = tuple(f"{name}_{corner}" for name in ("gap", "state") for corner in "mn")
     WOULD_TELL = "another slope or coefficient of friction"
-    is_slow = True
 
-    def __init__(self, scene: Scene, reading: Reading) -> None:
-        values = {"run.columns": [*self.NAMES, *self.CORNERS], "run.solvers": [DDA]}
-        super().__init__(reading.scene_of(scene).with_values(values), reading)
+    def candidates(self) -> Iterator[CandidateChange]:
+        """Yield everything that may be changed in the scene, with the normal springs alone and the cohesion."""
+        yield from super().candidates()
+        c = self.scene.contact
 
-    def candidates(self) -> Iterator[Candidate]:
-        """Yield everything that may be changed in the scene, one thing at a time."""
-        return candidates(self.scene)
+        def normal(u: float) -> Values:
+            return {"contact.stiffness": c.stiffness * math.exp(u), "contact.shear_stiffness": c.shear}
 
-    def solved(self, values: Values, steps: int, is_shifted: bool) -> Array | None:
-        """Return the displacements of a change, springs and friction larger by `SHIFT` where it is shifted."""
-        if is_shifted:
-            c = self.scene.with_values(values).contact
-            shifted = {"stiffness": c.stiffness, "shear_stiffness": c.shear, "friction": c.friction or 0.0}
-            values = values | {f"contact.{key}": value * (1 + SHIFT) for key, value in shifted.items()}
-        return self.columns(values, steps, *self.NAMES)
-
-    def columns(self, values: Values, steps: int, *names: str) -> Array | None:
-        """Return columns of the suite's own run; None where there is no such run."""
-        try:
-            history = get_solver(DDA).solve(self.scene.with_values(values | {"time.steps": steps})).history
-        except InputError:
-            return None
-        if history is None or len(history.time) != steps:
-            return None
-        return np.array([history.columns[name] for name in names])
+        words = "the normal springs alone are {:.4g} times the scene's".format
+        yield CandidateChange("normal-springs-factor", words, math.exp, normal, tuple(map(math.log, STARTS)))
+        width, _ = size(self.scene)
+        limit = coefficient(self.scene) * abs(float(model_of(self.scene).force[1])) / width  # as cohesion [Pa]
+        yield CandidateChange(
+            "cohesion",
+            lambda v: f"the cohesion is {v:.4g} Pa where the scene has {c.cohesion:.4g}",
+            lambda u: c.cohesion + limit * math.exp(u),
+            lambda u: {"contact.cohesion": c.cohesion + limit * math.exp(u)},
+            (math.log(CHANGE),),
+        )
 
     def corners(self, values: Values) -> tuple[Array, Array] | None:
         """Return gaps and closed states of both corners, (2, steps) each; None where there is no such run."""
@@ -258,11 +238,9 @@ class Habits:
         return self.weight == 0 or abs(self.weight - 1) <= SLIGHT
 
     @property
-    def springs(self) -> Candidate:
-        """The springs that these habits have, or that give the rows of a base without mass."""
-        name = "springs-factor" if self.along else "normal-springs-factor"
-        words = partial(_words_of_springs, "springs" if self.along else "normal springs alone")
-        return CandidateChange(name, words, math.exp, lambda _: {}, (0.0,))
+    def springs(self) -> str:
+        """The cause that has these springs, or that gives the rows of a base without mass."""
+        return "springs-factor" if self.along else "normal-springs-factor"
 
     def causes(self, search: SlopeSearch) -> dict[str, float | None]:
         """Return the ids of what differs from the scene, with their numbers."""
@@ -271,7 +249,7 @@ class Habits:
         soft = self.compliance(scene)
         is_base = SEEN < soft <= BENIGN_COMPLIANCE and not round_factor(math.exp(-self.softness), self.error)
         if self.softness and not is_base:
-            causes[self.springs.id] = math.exp(-self.softness)
+            causes[self.springs] = math.exp(-self.softness)
         if self.rules != scene.contact.rules:
             causes["lagged-friction"] = None
         if self.band is not None:
@@ -285,7 +263,7 @@ class Habits:
         return causes
 
 
-Judged = tuple[Habits, RunExplanation]
+Judged = tuple[Habits, Fitted]
 
 
 def habits_of(search: SlopeSearch) -> list[Judged]:
@@ -309,92 +287,76 @@ def _nearest(start: Habits, search: SlopeSearch) -> Judged:
     """Return habits with weight, springs and dead band at which they come nearest to a history."""
 
     def judged(habits: Habits) -> Judged:
-        return habits, search.judged(Fitted(fixed("habits", "", habits.values(search.scene)), 0.0, math.nan))
+        return habits, search.judged(Fitted(fixed("habits", "", habits.values(search.scene))))
 
     def early_size(habits: Habits) -> float:
         """Return the mean logarithm of what is left of the first stages; a landing spoils the last alone."""
         sizes = [_size_of(habits, search, stage) for stage in STAGES[:-1]]
         return float(np.mean(np.log(np.maximum(sizes, ARITHMETIC**2))))
 
-    before_landing = [_before_landing(replace(start, along=along), search) for along in (True, False)]
-    banded = _with_band(min(before_landing, key=early_size), search)
-    habits = _fitted(banded, (True, True), search, STAGES[-1])
-    if habits.band is not None:  # it may have stood in for weight and springs, not yet fitted to so many steps
-        plain = _fitted(replace(habits, band=None), (True, True), search, STAGES[-1])
-        habits = habits if _gains(habits, plain, search) else plain
-    nearest_habits = judged(habits)
-    has_weight = abs(habits.weight) > SLIGHT
-    has_springs = abs(habits.compliance(search.scene)) > SEEN
-    if has_weight and has_springs:
-        return nearest_habits
-    fewer = judged(_fitted(habits, (has_weight, has_springs), search, STAGES[-1]))
-    return fewer if fewer[1].explains else min(fewer, nearest_habits, key=lambda each: rank(each[1]))
+    before_landing = min(
+        (_before_landing(replace(start, along=along), search) for along in (True, False)), key=early_size
+    )
+    # a dead band may have stood in for weight and springs, not yet fitted to so many steps
+    trials = (before_landing, _with_band(before_landing, search))
+    plain, banded = (_fitted(trial, search, STAGES[-1]) for trial in trials)
+    left, left_with_band = (_size_of(habits, search, search.scene.time.steps) for habits in (plain, banded))
+    habits = banded if left >= FARTHER * max(left_with_band, ARITHMETIC) else plain
+    fewer = replace(
+        habits,
+        weight=habits.weight if abs(habits.weight) > SLIGHT else 0.0,
+        softness=habits.softness if abs(habits.compliance(search.scene)) > SEEN else 0.0,
+    )
+    few, many = judged(fewer), judged(habits)
+    return few if few[1].explains else min(few, many, key=lambda each: rank(each[1]))
 
 
 def _before_landing(habits: Habits, search: SlopeSearch) -> Habits:
     """Return habits fitted to the longest of the first stages that no landing, early or late, has spoiled."""
     for stage in STAGES[:-1]:
-        trial = _fitted(habits, (True, True), search, stage)
+        trial = _fitted(habits, search, stage)
         if _size_of(trial, search, stage) > SEEN * math.sqrt(2 * stage) and stage > STAGES[0]:
             break
         habits = trial
     return habits
 
 
-def _fitted(habits: Habits, free: tuple[bool, bool], search: SlopeSearch, steps: int) -> Habits:
-    """Return habits with weight and softness fitted to the first steps where they are free, else none."""
+def _fitted(habits: Habits, search: SlopeSearch, steps: int) -> Habits:
+    """Return habits with weight and softness fitted to the first steps."""
     from scipy.optimize import least_squares
 
-    is_free = np.array(free)
+    def at(numbers: Array) -> Habits:
+        weight, softness = numbers.tolist()
+        return replace(habits, weight=weight, softness=softness)
 
-    def at(z: Array) -> Habits:
-        full = np.zeros(2)
-        full[is_free] = z
-        return replace(habits, weight=float(full[0]), softness=float(full[1]))
-
-    if not any(free):
-        return at(np.empty(0))
     solution = least_squares(
-        lambda z: search.remainder(at(z).values(search.scene), steps).ravel(),
-        np.array([habits.weight, habits.softness])[is_free],
-        x_scale=np.array([1.0, 0.1])[is_free],
+        lambda numbers: search.remainder(at(numbers).values(search.scene), steps).ravel(),
+        [habits.weight, habits.softness],
+        x_scale=[1.0, CHANGE],
         xtol=ROUNDING,
         ftol=ROUNDING,
         max_nfev=ROUNDS,
     )
-    variance = 2 * solution.cost / max(len(solution.fun) - len(solution.x), 1)
+    variance = 2 * solution.cost / (len(solution.fun) - len(solution.x))
     spread = math.sqrt(variance * float(np.linalg.pinv(solution.jac.T @ solution.jac)[-1, -1]))
-    return replace(at(solution.x), error=NORMAL_95 * spread if free[1] else 0.0)
+    return replace(at(solution.x), error=NORMAL_95 * spread)
 
 
 def _with_band(habits: Habits, search: SlopeSearch) -> Habits:
-    """Return habits with the dead band that comes nearest, if corners open and it leaves far less than none."""
-    values = habits.values(search.scene)
-    corners = search.corners(values)
-    first = -_nearness(habits, search)[0]
-    if corners is None or np.all(corners[1][:, max(first - ORDER, 0) : first + 1]):  # it departs otherwise
-        return habits
-    penetration = abs(float(model_of(search.scene.with_values(values)).force[1])) / (2 * search.scene.contact.stiffness)
+    """Return habits with the dead band that comes nearest."""
+    scene = search.scene.with_values(habits.values(search.scene))
+    penetration = abs(float(model_of(scene).force[1])) / (2 * search.scene.contact.stiffness)
     low, high, number = BANDS
     best = habits
     ratio = math.inf
     while ratio > 1 + SEEN:  # as many between the neighbours of the best
         shares = np.geomspace(low, high, number).tolist()
-        trials = [replace(habits, band=share * penetration) for share in shares]
-        nearness = [_nearness(trial, search) for trial in trials]
-        best = trials[nearness.index(min(nearness))]
-        longest = [share for share, near in zip(shares, nearness, strict=True) if near[0] == min(nearness)[0]]
-        # too wide a band departs where the corner lands, too narrow a one before: it is at the least of these
+        nearness = {share: _nearness(replace(habits, band=share * penetration), search) for share in shares}
+        share = min(nearness, key=lambda share: nearness[share])
+        best = replace(habits, band=share * penetration)
         ratio = shares[1] / shares[0]
-        low = longest[0] / ratio
-        high = longest[0] * ratio
-    return best if _gains(best, habits, search) else habits
-
-
-def _gains(banded: Habits, plain: Habits, search: SlopeSearch) -> bool:
-    """Whether a dead band leaves so much less of a history that it is there."""
-    steps = search.scene.time.steps
-    return _size_of(plain, search, steps) >= FARTHER * max(_size_of(banded, search, steps), ARITHMETIC)
+        low, high = share / ratio, share * ratio
+    return best
 
 
 def _nearness(habits: Habits, search: SlopeSearch) -> tuple[int, float]:
@@ -403,39 +365,6 @@ def _nearness(habits: Habits, search: SlopeSearch) -> tuple[int, float]:
     beyond = np.flatnonzero(np.any(np.abs(left) > SEEN, axis=0))
     first = int(beyond[0]) if len(beyond) else left.shape[1]
     return -first, float(np.linalg.norm(left))
-
-
-# ---- one number ----
-
-
-def candidates(scene: Scene) -> Iterator[Candidate]:
-    """Yield what is tried."""
-    c = scene.contact
-    yield from laws(scene)
-    yield from of_numbers(scene, FACTORS)
-    yield CandidateChange(
-        "normal-springs-factor",
-        partial(_words_of_springs, "normal springs alone"),
-        math.exp,
-        lambda u: {"contact.stiffness": c.stiffness * math.exp(u), "contact.shear_stiffness": c.shear},
-        tuple(map(math.log, FACTORS)),
-    )
-    yield of_discount(scene, DISCOUNTS)
-    limit = coefficient(scene) * abs(float(model_of(scene).force[1])) / size(scene)[0]  # of friction, as cohesion [Pa]
-    yield CandidateChange(
-        "cohesion",
-        lambda v: f"the cohesion is {v:.4g} Pa where the scene has {c.cohesion:.4g}",
-        lambda u: c.cohesion + limit * math.exp(u),
-        lambda u: {"contact.cohesion": c.cohesion + limit * math.exp(u)},
-        (math.log(CHANGE),),
-    )
-    for scheme in of_schemes(scene):
-        if scheme.changed(0.0)["time.alpha"]:  # an explicit scheme has no friction
-            yield scheme
-
-
-def _words_of_springs(which: str, factor: float) -> str:
-    return f"the {which} are {factor:.4g} times the scene's"
 
 
 # ---- the verdict ----
@@ -448,9 +377,10 @@ def verdict_on(search: SlopeSearch, ranked: list[Judged]) -> RunVerdict:
     words = {name: words_of(name, value or 0.0) for name, value in causes.items()}
     springs: list[dict[str, Any]] = []
     if habits.softness:  # those that give the rows of habits on a base without mass, or that the habits have
-        alike = search.as_dict(RunExplanation(Fitted(habits.springs, -habits.softness, 0.0), 0.0, 0.0))
-        springs = [] if habits.springs.id in causes else [alike]
-        words |= {name: habits.springs.words(causes[name] or 0.0) for name in SPRINGS & causes.keys()}
+        (change,) = (change for change in search.changes if change.id == habits.springs)
+        alike = Fitted(change, -habits.softness)
+        springs = [] if habits.springs in causes else [search.as_dict(alike)]
+        words |= dict.fromkeys({habits.springs} & causes.keys(), alike.words)
     of_habits = RunVerdict(search, True, causes, words, run.values, springs)
     is_explained = run.explains and habits.is_usual
     if is_explained and not causes.keys() <= {*SPRINGS, "base-compliance"}:

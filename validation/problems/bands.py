@@ -86,7 +86,7 @@ def changes(scene: Scene) -> dict[str, Values]:
     own = ProblemHooks.of(scene).changes(scene)
     if own is not None:
         return own
-    changed = {number.id: number.changed(scene, 1 + UNKNOWN) for number in DiagnosisHooks.of(scene).numbers(scene)}
+    changed = {number.id: number.changed(1 + UNKNOWN) for number in DiagnosisHooks.of(scene).numbers(scene)}
     block = scene.stated_block
     if block is not None and block.vertices is not None:
         changed.pop("width-factor", None)

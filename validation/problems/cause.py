@@ -11,26 +11,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TypeAlias
+from functools import partial
 
 import numpy as np
 
 from validation.diagnosis.causes import UNEXPLAINED
 from validation.diagnosis.constants import SLIGHT, UNITS
 from validation.diagnosis.families import ONE_SCHEME
-from validation.diagnosis.fits.bar import norm
-from validation.diagnosis.hooks import DiagnosisHooks
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.numbers import CandidateChange, Values
-from validation.diagnosis.one_change import (
-    Residual,
-    alike,
-    fitted,
-    nearest,
-    nearest_start,
-    of_discount,
-    of_numbers,
-)
+from validation.diagnosis.one_change import fitted, nearest, of_scene
 from validation.diagnosis.reading import SIDEWAYS, Foreign
 from validation.errors import InputError
 from validation.metrics.values import largest
@@ -42,15 +32,10 @@ from validation.runs.numbers import significant
 from validation.scenes import features
 from validation.scenes.scene import Scene
 
-Change: TypeAlias = CandidateChange[Columns | None]  # to the columns of its number; None where there are none
 FACTORS = (1.0, 0.5, 0.75, 0.88, 1.12, 1.3, 2.0)  # to begin from where a run costs nothing; elsewhere the first
-LARGEST = 3.0  # of the logarithm of a factor; what is further away is forgotten, or in other units
-NEAR_UNITS = 0.3  # the same, from that of other units
 COLUMN_UNITS = (1e-6, 1e-3, 1e2, 1e3)  # factors of a column in other units: MPa, kPa, cm, mm
-DISCOUNTS = (0.99, 0.95, 0.8)  # of the velocity of a step
 DAMPINGS = (3.0, 30.0)  # 1/s, of the mass; of the stiffness over the square of the frequency of the steps
-MOST_LATE = 2.0  # steps
-FASTEST, SLOWEST = 1.1, 0.5  # of the rate at which time may run
+OUTPUT = "output"  # among the values of a change, no key of scenes: the columns that are written
 NOT_EXPLAINED = "not explained"
 WOULD_TELL = (
     "the same run at half the step (an error of the integrator falls to a half or a quarter, one of the model stays), "
@@ -63,10 +48,8 @@ USUAL = (  # causes that give the same rows are told in this order
 )
 BAR = 0.1  # of the band, that an explanation may leave
 CLEAR = 10.0  # times more that every other cause must leave than the one that is named alone
-ROUNDS, NUDGE = 8, 1e-5  # evaluations of a fit, and its relative change of a number for a derivative
-PURSUED, PURSUED_SLOW = 4, 3  # changes that are fitted, the nearest ones; fewer where a run takes a second
+PURSUED = 4  # changes that are fitted, the nearest ones
 NEAR = 3 * BAR  # what a change may leave along its slope and is fitted in any case
-HOPELESS = 10.0  # bands that a fit leaves after its first rounds, beyond which it has to have halved them
 SAME = 1e-6  # of the band: digit for digit
 MOST_ALIKE = 3  # causes that are named together
 FARTHEST = 1e6  # bands: a run that leaves its bounds is no nearer than that
@@ -74,110 +57,63 @@ MOST_STEPS = 200_000  # of a run by which the step is found at which a scheme pa
 NOTHING = 1e-7  # of the exact motion: an answer that is smaller does not move; in other units it is 1e-3 or 1e-6
 
 
-def of_data(runs: Runs, base: Base, cheap: bool) -> Iterator[Change]:
-    """Yield wrong numbers of the scene, run by a base, and another discount, which acts at every step of the scene."""
-    scene = runs.scene
-    if "column.layer" in base.values:  # the base cuts the scene's layers finer
-        scene = scene.with_values({"column.layer": base.values["column.layer"]})
-    factors = FACTORS if cheap else FACTORS[:1]
-    changes = [*of_numbers(scene, factors, units=cheap)]
-    if features.RIGID_BLOCKS in features.of(scene):  # whose modulus no factor changes
-        changes = [change for change in changes if change.id != "young-factor"]
-    if base.every == 1:
-        changes.append(of_discount(scene, DISCOUNTS))
-    for change in changes:
-
-        def run(u: float, values: Callable[[float], Values] = change.changed) -> Columns | None:
-            sensible = abs(u) <= LARGEST or any(abs(u - math.log(unit)) <= NEAR_UNITS for unit in UNITS)
-            return runs.sampled(base, values(u)) if sensible else None
-
-        yield change.giving(run)
-
-
-def of_damping(runs: Runs, base: Base) -> Iterator[Change]:
+def of_damping(scene: Scene) -> Iterator[CandidateChange]:
     """Yield viscous damping of the mass and of the stiffness, which DDA knows for linear motions."""
-    if not features.linear(runs.scene):
+    if not features.linear(scene):
         return
-    step = runs.scene.time.step
-    for key, unit, scale, symbol in (("mass", "1/s", 1.0, "a0"), ("stiffness", "s", step**2, "a1")):
+    for key, unit, scale, symbol in (("mass", "1/s", 1.0, "a0"), ("stiffness", "s", scene.time.step**2, "a1")):
 
         def value(u: float, scale: float = scale) -> float:
             return max(u, 0.0) * scale
 
-        def run(u: float, key: str = key, value: Callable[[float], float] = value) -> Columns | None:
-            return runs.sampled(base, {f"damping.{key}": value(u)})
+        def damped(u: float, key: str = key, value: Callable[[float], float] = value) -> Values:
+            return {f"damping.{key}": value(u)}
 
         words = f"viscous damping of the {key} is there, {symbol} = {{:.4g}} {unit}".format
-        yield CandidateChange(f"{key}-damping", words, value, run, DAMPINGS, 0.1)
+        yield CandidateChange(f"{key}-damping", words, value, damped, DAMPINGS, 0.1)
 
 
-def of_output(runs: Runs, base: Base, names: Sequence[str]) -> Iterator[Change]:
-    """Yield what may be wrong with rows and columns alone: a factor, a shift of the rows, the rate of time."""
-    plain = runs.sampled(base)
-    dense = runs.dense(base)
-    if plain is None or dense is None:
-        return
-    for group in (tuple(names), *((name,) for name in names if len(names) > 1)):
-        which = "all columns are" if group == tuple(names) else f"{group[0]} is"
+def of_output(scene: Scene, dense: History, names: tuple[str, ...]) -> Iterator[CandidateChange]:
+    """Yield what may be wrong with rows and columns alone: a factor, a shift of the rows, the rate of time.
 
-        def scaled(u: float, group: Sequence[str] = group) -> Columns:
-            return {name: x * (1 + u * (name in group)) for name, x in plain.items()}
+    What is before t = 0 is the first row of the exact motion, which is kept between the steps, too.
+    """
+    from scipy.interpolate import CubicSpline
+
+    # columns whose contacts open may start with a velocity, or at rest under their weight
+    moving_column = features.OF_MOVING_COLUMN & {*features.of(scene)}
+    starts = {name: dense.columns[name][:1] * bool(moving_column) for name in names}
+    time = np.append(0.0, dense.time)
+    courses = {
+        name: CubicSpline(time, np.append(start, dense.columns[name]), extrapolate=False)
+        for name, start in starts.items()
+    }
+    step = scene.time.step
+    instants = step * np.arange(1.0, scene.time.steps + 1)
+
+    def written(group: Sequence[str], factor: float = 1.0, rate: float = 1.0, late: float = 0.0) -> Values:
+        """Return all columns, those of a group larger by a factor and at the instants rate (t - late dt)."""
+        other_instants = np.maximum(rate * (instants - late * step), 0.0)
+        columns = {name: course(instants) for name, course in courses.items()}
+        return {OUTPUT: columns | {name: factor * courses[name](other_instants) for name in group}}
+
+    for group in (names, *((name,) for name in names if len(names) > 1)):
+        which = "all columns are" if group == names else f"{group[0]} is"
 
         def late(steps: float, which: str = which) -> str:
             return f"{which} {abs(steps):.3g} steps {'late' if steps > 0 else 'early'}"
 
-        def shifted(u: float, group: Sequence[str] = group) -> Columns | None:
-            return _moved(runs, dense, plain, group, 1.0, u)
-
         words = f"{which} {{:.4g}} times the exact motion's".format
-        yield CandidateChange("factor", words, lambda u: 1 + u, scaled, (0.0,))
+        yield CandidateChange("factor", words, lambda u: u, partial(written, group), (1.0,))
+        shifted = partial(written, group, 1.0, 1.0)
         yield CandidateChange("shift", late, lambda u: u, shifted, (0.0, 1.0, -1.0), 1e-2)
     yield CandidateChange(
         "time-factor",
-        lambda rate: f"time runs {rate:.4g} times as fast as in the exact motion{_by_mass(runs.scene, rate)}",
+        "time runs {:.4g} times as fast as in the exact motion".format,
         math.exp,
-        lambda u: _moved(runs, dense, plain, tuple(names), math.exp(u), 0.0),
+        lambda u: written(names, rate=math.exp(u)),
         (0.0, math.log(0.8), math.log(0.9)),
     )
-
-
-def springs_alike(scene: Scene, number: str, factor: float) -> str:
-    """Return the springs that do the same: vertically, mass, stiffness and loads go with the width, 2 p does not."""
-    vertical = {features.UNILATERAL, features.WEIGHT, features.DEAD_BAND}
-    if number != "width-factor" or not {*features.of(scene)} <= vertical:
-        return ""
-    return f", as springs of {1 / factor:.4g} times the scene's do"
-
-
-def _by_mass(scene: Scene, rate: float) -> str:
-    """Return the density that does the same: of M x'' + K x = F from rest, without weight, it sets the rate of time."""
-    load = scene.stated_load
-    if load is None or load.gravity or scene.block.velocity or load.base_motion:
-        return ""
-    return f", as a density of {rate**-2:.4g} times the scene's does"
-
-
-def _moved(
-    runs: Runs, dense: History, plain: Columns, group: Sequence[str], rate: float, late: float
-) -> Columns | None:
-    """Return columns at other instants: rate (t - late dt); what is before t = 0 is the motion's first row."""
-    from scipy.interpolate import CubicSpline
-
-    if not SLOWEST <= rate <= FASTEST or abs(late) > MOST_LATE:
-        return None
-    step = runs.scene.time.step
-    instants = rate * (step * np.arange(1.0, runs.scene.time.steps + 1) - late * step)
-    if instants[-1] > dense.time[-1]:
-        return None
-    moving_column = features.OF_MOVING_COLUMN & {*features.of(runs.scene)}
-    moved = dict(plain)
-    time = np.concatenate([[0.0], dense.time])
-    for name in group:
-        # columns whose contacts open may start with a velocity, or at rest under their weight
-        column = dense.columns[name]
-        values = np.concatenate([[column[0] if moving_column else 0.0], column])
-        moved[name] = np.asarray(CubicSpline(time, values)(np.maximum(instants, 0.0)), dtype=np.float64)
-    return moved
 
 
 @dataclass(frozen=True)
@@ -243,11 +179,10 @@ def _units(answer: Columns, runs: Runs) -> Cause | None:
     """
     exact = runs.standard.exact.columns
     factors: dict[str, float] = {}
-    for name, band in runs.standard.bands.items():
-        if name not in answer:
-            continue
-        x = exact[name][: band.rows]
-        factor = float(answer[name][: band.rows] @ x / (x @ x))
+    for name, values in answer.items():
+        rows = runs.standard.bands[name].rows
+        x = exact[name][:rows]
+        factor = float(values[:rows] @ x / (x @ x))
         factors[name] = next((u for u in COLUMN_UNITS if math.isclose(factor, u, rel_tol=SLIGHT)), 1.0)
     remainder = runs.apart({name: answer[name] / factor for name, factor in factors.items()}, exact)
     if len({*factors.values()}) == 1 or remainder > 1:
@@ -277,13 +212,13 @@ class Search:
         elastic_bars = features.OF_MOVING_COLUMN & scene_features and features.RIGID_BLOCKS not in scene_features
         quick = not {features.FRICTION, features.ROTATION} & scene_features
         for base in self._bases(exact, quick and not elastic_bars):
-            causes += [*self._laws(base), *self._changes(base, quick and not (elastic_bars and base.solver))]
+            causes += self._changes(base, quick and not (elastic_bars and base.exact))
         return sorted(causes, key=lambda each: (each.left, len(each.ids)))
 
     def _bases(self, exact: Base | None, cheap: bool) -> list[Base]:
         """Return the runs that one wrong number is put into: the exact motion's, and those of the usual schemes."""
         bases = [] if exact is None else [exact]
-        if exact is not None and not exact.values and not exact.solver:  # the scene's own scheme is exact enough
+        if exact is not None and not exact.values and exact.every == 1:  # the scene's own scheme is exact enough
             return bases
         return [*bases, *(base for base in self.runs.schemes() if base.usual and (cheap or not base.values))]
 
@@ -292,45 +227,48 @@ class Search:
         for base in self.runs.schemes():
             remainder = self._left(self.runs.sampled(base))
             if remainder <= BAR:
-                values = {"alpha": base.alpha(t), "delta": base.delta(t), "step": t.step / base.every}
+                alpha, delta = base.pair(t)
+                values = {"alpha": alpha, "delta": delta, "step": t.step / base.every}
                 yield Cause(_scheme_sentence(base, self.runs.scene), ("scheme",), values, (), remainder, base)
 
-    def _laws(self, base: Base) -> Iterable[Cause]:
-        """Yield other laws of the contact under which a base gives the answer back."""
-        scene = self.runs.scene
-        for law in DiagnosisHooks.of(scene).laws(scene):
-            remainder = self._left(self.runs.sampled(base, law.changed(0.0)))
-            if remainder <= BAR:
-                number = law.value(0.0)
-                values = {} if math.isnan(number) else {law.id: number}
-                yield _with(law.id, law.words(number), values, remainder, base, scene)
-
     def _changes(self, base: Base, cheap: bool) -> Iterable[Cause]:
-        """Yield the changes by one number that give the answer back, of those that come nearest along their slope."""
-        changes = list(of_data(self.runs, base, cheap))
-        if base.exact:
-            changes += [*of_damping(self.runs, base), *of_output(self.runs, base, tuple(self.answer))]
-        starts = [nearest_start(self._residual(change), change) for change in changes]
-        for start in nearest(starts, PURSUED if cheap else PURSUED_SLOW, NEAR):
-            best = fitted(self._residual(start.change), start, ROUNDS, NUDGE, hopeless=HOPELESS)
-            remainder = self._left(best.change.changed(best.u))
-            if remainder <= BAR:
-                yield _of_change(best.change, best.u, remainder, base, self.runs.scene)
+        """Yield the changes that give the answer back by a base, of those that come nearest along their slope.
 
-    def _residual(self, change: Change) -> Residual:
-        """Return the function of the difference of the answer and a change's columns over norms and bands."""
+        They are told by themselves where the base stands for the exact motion, else beside its scheme.
+        """
+        scene = self.runs.scene
+        # the base may cut the scene's layers finer
+        layers = {key: values for key, values in base.values.items() if key == "column.layer"}
+        tried = of_scene(scene.with_values(layers), (*FACTORS, *UNITS) if cheap else FACTORS[:1])
+        # a discount acts at every step of the scene
+        others = {"scheme", "start", *(["gg"] if base.every > 1 else [])}
+        changes = [change for change in tried if change.id not in others]
+        dense = self.runs.dense(base) if base.exact else None
+        if dense is not None:
+            changes += [*of_damping(scene), *of_output(scene, dense, tuple(self.answer))]
+        residual = partial(self._residual, base)
+        for start in nearest(residual, changes, PURSUED, NEAR, NEAR):
+            best = fitted(residual, start)
+            remainder = self._left(self._columns(base, best.values))
+            if remainder <= BAR and best.is_sensible:
+                values = {} if best.value is None else {best.id: best.value}
+                if base.exact:
+                    yield Cause(best.words, (best.id,), values, (), remainder)
+                else:
+                    words = f"{_scheme_sentence(base, scene)}; and {best.words}"
+                    yield Cause(words, ("scheme", best.id), values, (), remainder)
 
-        def residual(u: float) -> Array:
-            columns = change.changed(u)
-            parts = []
-            for name, x in self.answer.items():
-                band = self.runs.standard.bands[name]
-                size = norm(self.runs.standard.exact.columns[name][: band.rows]) * band.high
-                other = np.full(band.rows, np.inf) if columns is None else columns[name][: band.rows]
-                parts.append((x[: band.rows] - other) / size)
-            return np.nan_to_num(np.clip(np.concatenate(parts), -FARTHEST, FARTHEST), nan=FARTHEST)
+    def _columns(self, base: Base, values: Values) -> Columns | None:
+        """Return the columns of a run by a base with other values, or those that are written of it."""
+        return values[OUTPUT] if OUTPUT in values else self.runs.sampled(base, values)
 
-        return residual
+    def _residual(self, base: Base, change: CandidateChange, u: float) -> Array:
+        """Return the difference of the answer and a change's columns over norms and bands."""
+        columns = self._columns(base, change.changed(u))
+        if columns is None:
+            columns = {name: np.full(len(x), np.inf) for name, x in self.answer.items()}
+        shares = np.concatenate(self.runs.shares(self.answer, columns))
+        return np.nan_to_num(np.clip(shares, -FARTHEST, FARTHEST), nan=FARTHEST)
 
     def _left(self, columns: Columns | None) -> float:
         """Return what columns leave of the answer over the band, inf where there are none."""
@@ -342,7 +280,7 @@ class Search:
 
 def _scheme_sentence(base: Base, scene: Scene) -> str:
     t = scene.time
-    alpha, delta = base.alpha(t), base.delta(t)
+    alpha, delta = base.pair(t)
     damps = delta > 0.5 or t.discount < 1
     why = "numerical damping" if damps else "the error of its step"
     scene_features = features.of(scene)
@@ -354,22 +292,10 @@ def _scheme_sentence(base: Base, scene: Scene) -> str:
     return f"another integrator, {base.words}{step}: {why}"
 
 
-def _of_change(change: Change, u: float, remainder: float, base: Base, scene: Scene) -> Cause:
-    value = significant(change.value(u), 6)
-    words = change.words(value) + springs_alike(scene, change.id, value)
-    return _with(change.id, words, {change.id: value}, remainder, base, scene)
-
-
-def _with(name: str, words: str, values: dict[str, float], remainder: float, base: Base, scene: Scene) -> Cause:
-    """Return a cause that a base shows: by itself where that stands for the exact motion, else beside its scheme."""
-    if base.exact:
-        return Cause(words, (name,), values, (), remainder)
-    return Cause(f"{_scheme_sentence(base, scene)}; and {words}", ("scheme", name), values, (), remainder)
-
-
 def _named(causes: Sequence[Cause]) -> Cause:
     """Return the usual one of the causes that leave hardly more than the least; nothing where these are too many."""
-    near = alike(causes, lambda cause: cause.left, CLEAR, BAR / CLEAR**2)
+    bar = CLEAR * max(min(cause.left for cause in causes), BAR / CLEAR**2)
+    near = [cause for cause in causes if cause.left <= bar]
     fewest = min(len(cause.ids) for cause in near)
     distinct: dict[tuple[object, ...], Cause] = {}  # a start that makes no difference is told once
     for cause in sorted((cause for cause in near if len(cause.ids) == fewest), key=_rank):

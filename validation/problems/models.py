@@ -14,17 +14,17 @@ import numpy as np
 from validation.diagnosis.fits.bar import norm
 from validation.diagnosis.fits.fit import NAMED
 from validation.diagnosis.hooks import DiagnosisHooks
+from validation.diagnosis.numbers import AVERAGE
+from validation.diagnosis.one_change import of_schemes, run_of
 from validation.diagnosis.sentences import scheme_words
-from validation.errors import InputError
 from validation.problems.bands import Standard, definition_of, scene_of
 from validation.problems.truth import truth_of
 from validation.runs.history import Array, History
-from validation.runs.run import Outcome
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.scenes.tables import TimeSection
 from validation.solvers.contract import Role
-from validation.solvers.registry import by_role, get_solver
+from validation.solvers.registry import by_role
 
 FINER = (8, 32, 128)  # steps in one of the scene's, of which the first that is accurate is taken
 LONG = 64  # more steps than that in one of the scene's are run for linear scenes only, whose steps cost nothing
@@ -44,20 +44,16 @@ class Base:
     values: Mapping[str, Any]
     every: int = 1
     usual: bool = False  # whether wrong numbers are looked for in runs of it as well
-    solver: str = ""  # an exact solution that runs it; empty where it is DDA
+    solver: str = by_role(Role.JUDGED)[0]  # DDA, or an exact solution that runs it
 
     @property
     def exact(self) -> bool:
         """Whether the run stands for the exact motion."""
         return not self.words
 
-    def alpha(self, time: TimeSection) -> float:
-        """Return its alpha, where it states none that of the scene."""
-        return float(self.values.get("time.alpha", time.alpha))
-
-    def delta(self, time: TimeSection) -> float:
-        """Return its delta, where it states none that of the scene."""
-        return float(self.values.get("time.delta", time.delta))
+    def pair(self, time: TimeSection) -> tuple[float, float]:
+        """Return its alpha and delta, those of the scene where it states none."""
+        return float(self.values.get("time.alpha", time.alpha)), float(self.values.get("time.delta", time.delta))
 
 
 @functools.lru_cache(maxsize=2)
@@ -80,8 +76,7 @@ class Runs:
 
     def dense(self, base: Base, values: Mapping[str, Any] | None = None) -> History | None:
         """Return a run at its own steps with other data, None where its solver cannot run it."""
-        stepped = self._stepped(base, values or {})
-        return _run_by(self.scene, stepped, base.solver) if base.solver else _run(self.scene, stepped)
+        return run_of(self.scene, self._stepped(base, values or {}), base.solver)
 
     def _stepped(self, base: Base, values: Mapping[str, Any]) -> dict[str, Any]:
         t = self.scene.time
@@ -99,19 +94,24 @@ class Runs:
             self.samples[key] = None if run is None else {name: x[rows].copy() for name, x in run.columns.items()}
         return self.samples[key]
 
-    def apart(self, answer: Columns, columns: Columns) -> float:
-        """Return the largest difference of columns over the exact motion's norm and over its band; inf if not finite.
+    def shares(self, answer: Columns, columns: Columns) -> list[Array]:
+        """Return the difference of each column in the rows that are judged over the exact motion's norm and its band.
 
-        Columns that one of them lacks, and rows that are not judged, do not count.
+        Columns that one of them lacks are left out.
         """
-        shares = [0.0]
-        for name, band in self.standard.bands.items():
-            if name in answer and name in columns:
-                size = norm(self.standard.exact.columns[name][: band.rows])
-                with np.errstate(all="ignore"):
-                    gap = norm(answer[name][: band.rows] - columns[name][: band.rows])
-                shares.append(gap / (size * band.high) if math.isfinite(gap) else math.inf)
-        return max(shares)
+        exact = self.standard.exact.columns
+        with np.errstate(all="ignore"):
+            return [
+                (answer[name] - columns[name])[: band.rows] / (norm(exact[name][: band.rows]) * band.high)
+                for name, band in self.standard.bands.items()
+                if name in answer and name in columns
+            ]
+
+    def apart(self, answer: Columns, columns: Columns) -> float:
+        """Return the largest norm of the `shares`; inf if not finite."""
+        with np.errstate(all="ignore"):
+            norms = [0.0, *map(norm, self.shares(answer, columns))]
+        return float(np.max(np.nan_to_num(norms, nan=math.inf, posinf=math.inf)))
 
     def exact(self) -> Base | None:
         """Return the cheapest run that stands for the exact motion, None where none comes near enough."""
@@ -134,42 +134,21 @@ class Runs:
 
     def schemes(self) -> Iterator[Base]:
         """Yield the schemes by which programs step, at the steps of the scene and, the usual ones, at parts of them."""
-        t, slow = self.scene.time, features.ROTATION in features.of(self.scene)
-        scene_pair = (t.alpha, t.delta)
-        yield Base(scheme_words(*scene_pair, t.discount), {}, usual=True)
-        if slow:
+        t = self.scene.time
+        own = t.alpha, t.delta
+        yield Base(scheme_words(*own, t.discount), {}, usual=True)
+        if features.ROTATION in features.of(self.scene):  # whose runs take long
             return
-        for pair in dict.fromkeys([scene_pair, *NAMED.values()]):
-            for start in ("zero", "consistent"):
-                if (pair, start) != (scene_pair, t.start):
-                    usual = (pair, start) == (NAMED["average acceleration"], "consistent")
-                    words = f"{scheme_words(*pair, t.discount)}, initial acceleration {start}"
-                    yield Base(words, {"time.alpha": pair[0], "time.delta": pair[1], "time.start": start}, usual=usual)
-        for pair in dict.fromkeys([scene_pair, NAMED["constant acceleration"], NAMED["average acceleration"]]):
-            alpha, delta = reversed(pair)
+        for change in of_schemes(self.scene):
+            values = change.changed(0.0)
+            words = scheme_words(values["time.alpha"], values["time.delta"], t.discount)
+            usual = values.items() >= AVERAGE.items()
+            yield Base(f"{words}, initial acceleration {values['time.start']}", values, usual=usual)
+        for alpha, delta in (own, NAMED["constant acceleration"], NAMED["average acceleration"]):
             if alpha != delta:
-                words = f"{INTERCHANGED}, {scheme_words(alpha, delta, t.discount)}"
-                yield Base(words, {"time.alpha": alpha, "time.delta": delta})
+                words = f"{INTERCHANGED}, {scheme_words(delta, alpha, t.discount)}"
+                yield Base(words, {"time.alpha": delta, "time.delta": alpha})
         for every in (2, 4):
-            for pair in dict.fromkeys([scene_pair, (0.25, 0.5)]):
-                values = {"time.alpha": pair[0], "time.delta": pair[1], "time.start": "consistent"}
-                words = f"{scheme_words(*pair, t.discount)} at a step of {t.step / every:g} s"
-                yield Base(words, values, every)
-
-
-def _run(scene: Scene, values: Mapping[str, Any]) -> History | None:
-    return _run_by(scene, values, by_role(Role.JUDGED)[0])
-
-
-def _run_by(scene: Scene, values: Mapping[str, Any], name: str) -> History | None:
-    try:
-        changed = scene.with_values(dict(values))
-        solver = get_solver(name)
-        if solver.refusal(changed) is not None:
-            return None
-        with np.errstate(all="ignore"):
-            run = solver.solve(changed)
-    except (InputError, ArithmeticError, ValueError):
-        return None
-    whole = run.outcome is Outcome.COMPLETED and run.history is not None
-    return run.history if whole else None
+            for alpha, delta in (own, NAMED["average acceleration"]):
+                words = f"{scheme_words(alpha, delta, t.discount)} at a step of {t.step / every:g} s"
+                yield Base(words, AVERAGE | {"time.alpha": alpha, "time.delta": delta}, every)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.hooks import DiagnosisHooks
 from validation.diagnosis.judgement import check_block, judged_block
-from validation.diagnosis.numbers import CandidateChange, Number, Values, laws, numbers_of_block
+from validation.diagnosis.numbers import CandidateChange, Number, laws, numbers_of_block
 from validation.diagnosis.other_solvers import rivals_of
 from validation.diagnosis.reading import Foreign
 from validation.scenes.scene import Scene
@@ -20,7 +20,7 @@ class HOOKS(DiagnosisHooks):
         """Yield material, size, springs and friction."""
         return numbers_of_block(scene)
 
-    def laws(self, scene: Scene) -> Iterator[CandidateChange[Values]]:
+    def laws(self, scene: Scene) -> Iterator[CandidateChange]:
         """Yield contact that opens or does not, and what may be forgotten."""
         return laws(scene)
 

@@ -30,7 +30,7 @@ class HOOKS(DiagnosisHooks):
         """Yield the densities of layers, where they differ."""
         return numbers_of_layers(scene)
 
-    def laws(self, scene: Scene) -> Iterator[CandidateChange[Values]]:
+    def laws(self, scene: Scene) -> Iterator[CandidateChange]:
         """Yield contacts that hold or are not there, and what may be forgotten; none of a bonded column."""
         yield from () if scene.column.law == "bonded" else laws(scene)
 

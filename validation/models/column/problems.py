@@ -45,8 +45,8 @@ def _changes_of_contacts(scene: Scene, column: ColumnSection, factor: float) -> 
     if any(math.isfinite(contact.strength) for contact in column.contacts):
         changed["the contacts' strength"] = contact_values(column, strength=factor)
     if any(math.isfinite(layer.young) for layer in column.layer):
-        changed["Young's modulus"] = layers("young")(scene, factor)
-    changed["the density"] = layers("density")(scene, factor)
+        changed["Young's modulus"] = layers(scene, "young", factor)
+    changed["the density"] = layers(scene, "density", factor)
     return changed
 
 
