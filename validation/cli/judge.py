@@ -304,29 +304,18 @@ def all_defects() -> Iterator[None]:
 # ---- gates ----
 
 
-def check_loads(source: str) -> None:
-    """Raise InputError for a solver that cannot be loaded, before anything is run with it."""
-    from validation.solvers.registry import get_solver
-    from validation.solvers.user import UserSolver
-
-    solver = get_solver(source)
-    if isinstance(solver, UserSolver):
-        solver.check_module()
-        if reason := solver.load_error():
-            raise InputError(f"cannot be loaded: {reason}", field="SOLVER", value=repr(source))
-
-
 def _judge_by_gates(source: str, studies: Sequence[str], verbose: bool, as_json: bool) -> NoReturn:
     """Run the gates of studies with a solver in the place of dda, and print what they tell."""
     import tempfile
 
     from validation.gates.gate import Status
     from validation.runs.results import Results
+    from validation.solvers.registry import get_solver
     from validation.suite.own_solver.block import block, wrapped
     from validation.suite.own_solver.gates import applying
     from validation.suite.own_solver.session import Session, plain
 
-    check_loads(source)
+    get_solver(source).check_loads()
     known = list(dict.fromkeys(study for study, _ in applying().values()))
     for name in studies:
         if name not in (*known, "all"):

@@ -20,10 +20,9 @@ from validation.runs.numbers import error_percent
 from validation.runs.progress import Progress
 from validation.runs.run import Outcome, Run
 from validation.solvers.contract import Solver
-from validation.solvers.files import Outside
 from validation.solvers.foreign import SAME_AS
 from validation.solvers.registry import get_solver
-from validation.solvers.user import UserSolver
+from validation.solvers.user import Outside
 
 # The first answers of a user's solver that took no longer [s] are run a second time, which shows whether it repeats.
 REPEATED, REPEATED_WITHIN = 2, 10.0
@@ -103,12 +102,10 @@ def answers_of(name: str, problems: Sequence[Problem], progress: Progress) -> An
         There is no such solver, or what it reads is no history.
     """
     solver = get_solver(name)
-    about = {}
-    if isinstance(solver, UserSolver):
-        solver.check_module()
-        about = solver.about()
+    solver.check_module()
+    about = solver.about()
     answers = []
-    repeats = REPEATED if isinstance(solver, UserSolver | Outside) else 0
+    repeats = REPEATED if isinstance(solver, Outside) else 0
     for number, problem in enumerate(problems):
         progress(number, len(problems), f"{name} {problem.name}")
         answer = _answer(solver, problem)

@@ -18,10 +18,8 @@ from validation.runs.history import History
 from validation.runs.results import Results
 from validation.runs.row import Row, Value
 from validation.runs.run import Outcome
-from validation.solvers.files import Outside
 from validation.solvers.foreign import SAME_AS
 from validation.solvers.registry import get_solver
-from validation.solvers.user import PARTS, UserSolver
 from validation.suite.folders import judged_studies
 from validation.suite.matrix import JUDGED, CaseInPlace
 from validation.suite.own_solver import gates, history
@@ -107,8 +105,7 @@ class Session(GateRuns):
     @cached_property
     def parts(self) -> frozenset[str]:
         """What the solver reports beside its history, among "modes" and "static"."""
-        solver = get_solver(self.solver)
-        return solver.parts() if isinstance(solver, UserSolver | Outside) else PARTS
+        return get_solver(self.solver).parts()
 
     def judge(self, name: str) -> tuple[Verdict, GateReport]:
         """Run what a gate needs, and judge it; what cannot be judged is not run."""
