@@ -18,13 +18,13 @@ from validation.diagnosis.hooks import DiagnosisHooks
 from validation.diagnosis.numbers import Values
 from validation.metrics.values import largest
 from validation.models.column.tables import ColumnSection
+from validation.problems.numbered import UNKNOWN
 from validation.problems.problem import Problem, ProblemHooks
 from validation.problems.truth import exact, truth_of
 from validation.runs.history import Array, History
 from validation.runs.numbers import share_text
 from validation.scenes.scene import Scene, parse_scene
 
-UNKNOWN = 0.01  # relative error of a datum that nobody knows better
 # What one per cent of a datum moves further than this is not determined by the data any more: an answer of zeros, whose
 # error is 1, must not come near to it. The column is judged up to the instant at which that happens.
 LARGEST = 0.2

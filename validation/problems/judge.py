@@ -11,7 +11,7 @@ from validation.errors import InputError
 from validation.gates.gate import Status
 from validation.metrics.pairs import relative_l2
 from validation.problems.bands import Band, Standard, standard
-from validation.problems.numbered import ROUNDING, measured
+from validation.problems.numbered import ROUNDING
 from validation.problems.problem import Problem
 from validation.problems.quantities import Quantity, quantities
 from validation.runs.history import Array, History
@@ -122,18 +122,30 @@ def judge(problem: Problem, history: History, against: Standard | None = None) -
 def _judged_numbers(problem: Problem, history: History) -> Judgement:
     """Judge numbers that are measured on an answer: the error of each is a share of its scale."""
     until = problem.scene.time.duration
+    answer = history.until(until)
     criteria = []
     numbers = []
-    for one in measured(problem.numbers, history.until(until)):
-        quantity = one.quantity
-        if quantity.optional and one.value is None:
-            continue
-        numbers.append(Quantity(quantity.name, quantity.unit, one.value, quantity.exact, (quantity.low, quantity.high)))
-        error, allowed = one.shares
-        if error is None and one.status is Status.FAIL:
-            error = math.inf
-        within = until if one.status is Status.PASS else 0.0
-        criteria.append(Criterion(quantity.name, one.status, error, allowed, until, quantity.reason, within))
+    for number in problem.numbers:
+        is_reported = True
+        try:
+            value = number.measure(answer)
+        except KeyError:  # of a column that the answer withholds
+            value = None
+            is_reported = False
+        if value is None or not math.isfinite(value):
+            if number.optional:
+                continue
+            value = None
+        numbers.append(Quantity(number.name, number.unit, value, number.exact, (number.low, number.high)))
+        error = math.inf if value is None else abs(value - number.exact) / number.scale
+        status = Status.PASS if value is not None and number.passes(value) else Status.FAIL
+        if not is_reported:
+            status = Status.NOT_REPORTED
+        within = until if status is Status.PASS else 0.0
+        allowed = number.allowed(math.inf if value is None else value)
+        criteria.append(
+            Criterion(number.name, status, error if is_reported else None, allowed, until, number.reason, within)
+        )
     return Judgement(problem.name, tuple(criteria), tuple(numbers))
 
 
