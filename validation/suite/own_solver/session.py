@@ -49,8 +49,7 @@ class GateReport:
     key: str  # of its history in `results`
     results: str  # directory
     same_as: str = ""  # solvers of the suite, separated by blanks, whose history of this scene is this one bit for bit
-    repeated: bool = False  # whether the scene was run twice
-    apart_in: str = ""  # the column in which the two runs differ most, by more than rounding
+    apart_in: str = ""  # the column in which two runs of the scene differ most, by more than rounding
     apart: float = 0.0  # by how much: relative L2 [1]
 
 
@@ -100,7 +99,6 @@ class Session(GateRuns):
     def __init__(self, user: str, results: Results) -> None:
         super().__init__(results, judged_studies(), user)
         self._differences: dict[str, tuple[str, float]] = {}  # of the scenes that were run twice
-        self._same: dict[tuple[str, str], bool] = {}  # by scene and solver of the suite
 
     @cached_property
     def parts(self) -> frozenset[str]:
@@ -129,8 +127,7 @@ class Session(GateRuns):
             "" if row is None else str(row.outcome),
             "" if row is None else row.key,
             str(self.results.directory),
-            self._same_as(case.scene.name),
-            case.scene.name in self._differences,
+            self._same_as(study, gate),
             apart_in,
             min(apart, LARGEST),
         )
@@ -178,24 +175,19 @@ class Session(GateRuns):
         if again.history is not None:
             self._differences[case.scene.name] = largest_difference(own_history, again.history)
 
-    def _same_as(self, scene: str) -> str:
-        """Return the solvers of the suite whose history of a scene is the user's bit for bit.
+    def _same_as(self, study: str, gate: Gate) -> str:
+        """Return the solvers of the suite whose history of a gate's scene is the user's bit for bit.
 
-        `dda` is compared where the run is checked; of the others those that gates have needed.
+        `dda` is compared where the run is checked; of the others those that the gate needs.
         """
-        row = self.rows.get((scene, JUDGED))
-        if row is None:
+        row = self.rows.get((gate.scene, JUDGED))
+        own_history = self._history(gate.scene)
+        if row is None or own_history is None:
             return ""
         same = [note.removeprefix(SAME_AS) for note in row.notes if note.startswith(SAME_AS)]
-        for name, solver in self.rows:
-            if name != scene or solver == JUDGED:
-                continue
-            if (name, solver) not in self._same:
-                own_history = self._history(name)
-                other = self._history(name, solver)
-                is_same = own_history is not None and other is not None and is_identical(own_history, other)
-                self._same[name, solver] = is_same
-            if self._same[name, solver]:
+        for scene, solver in gates.study_of(study).needs(gate):
+            other = self._history(scene, solver) if scene == gate.scene and solver != JUDGED else None
+            if other is not None and is_identical(own_history, other):
                 same.append(solver)
         return " ".join(same)
 
