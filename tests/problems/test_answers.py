@@ -41,7 +41,7 @@ def test_settings_of_a_program_are_read_with_their_problems_in_the_order_of_the_
     (fine / "notes.txt").write_text("anything")
     told = []
     sets = read_sets(tmp_path, progress=lambda *done: told.append(done[:2]))
-    assert told == [(0, 4), (0, 4), (2, 4), (2, 4)]
+    assert told == [(0, 2), (1, 2)]
     assert names_of(sets) == [("coarse", ("locked", "column")), ("fine", ("rocking",))]
     assert [one.data.step_of("rocking") for one in sets] == [0.002, 1e-3]
     assert sets[1].data.step_of("locked") is None

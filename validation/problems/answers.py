@@ -5,10 +5,11 @@ The layout: `submissions/PROGRAM/VERSION/SETTINGS/submission.json` and, beside i
 
 from __future__ import annotations
 
+import filecmp
 import os
 import re
 import shutil
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,11 +18,10 @@ from validation.errors import InputError
 from validation.gates.gate import Status
 from validation.problems.bands import standard
 from validation.problems.data import PACK, AnswersData
-from validation.problems.pack import ANSWERS_TEMPLATE, CHOSEN
 from validation.problems.packs import packs, stale
 from validation.problems.problem import Problem, ProblemHooks, problem
 from validation.problems.problem import names as names_of_pack
-from validation.problems.stated import Document, checked, read_document
+from validation.problems.stated import checked, read_document
 from validation.runs.defects import Defects, Place
 from validation.runs.files import atomic_directory
 from validation.runs.history import History
@@ -36,7 +36,6 @@ ABSENT = f"not_reported in {FILE} is for what the program cannot report"
 UNANSWERED = "must hold the table of a problem"
 DEEPEST = 4  # folders between the one that is named and a folder of answers
 TABLE = ".csv"
-FILLED_IN = {name: blank for name, blank in ANSWERS_TEMPLATE.items() if name not in CHOSEN}
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +92,7 @@ def read_sets(
     """Read all folders of answers at or at most `DEEPEST` levels below a directory.
 
     `in_layout` says whether each has to lie in its own place, `PROGRAM/VERSION/SETTINGS`. `progress` is told before
-    each table how many are read. `own` are the problems that are answered, by the names of their tables; those of the
+    each folder how many are read. `own` are the problems that are answered, by the names of their tables; those of the
     pack by default.
 
     Raises
@@ -105,20 +104,14 @@ def read_sets(
     folders = list(_folders(root))
     if not folders:
         raise InputError(f"must be a directory with {FILE} and CSV files, or of such", source=root, advice=EXPORT)
-    total = sum(len(_tables(folder)) for folder in folders)
-    number = 0
     sets: list[AnswerSet] = []
-    for folder in folders:
-
-        def step(name: str, first: int = number) -> None:
-            progress(first, total, f"reading {name}")
-
+    for number, folder in enumerate(folders):
+        progress(number, len(folders), f"reading {folder.name}")
         try:
-            answer_set = _read_set(folder, own, defects, step)
+            answer_set = _read_set(folder, own, defects)
         except InputError as error:
             defects.take(error)
-            answer_set = None
-        number += len(_tables(folder))
+            continue
         if answer_set is not None:
             sets.append(answer_set)
             if in_layout and folder.relative_to(root).parts != answer_set.address:
@@ -148,43 +141,36 @@ def _tables(folder: Path) -> list[Path]:
     return sorted(path for path in folder.iterdir() if _is_table(path.name))
 
 
-def _read_set(
-    folder: Path, own: Mapping[str, Problem] | None, defects: Defects, step: Callable[[str], None]
-) -> AnswerSet | None:
+def _read_set(folder: Path, own: Mapping[str, Problem] | None, defects: Defects) -> AnswerSet | None:
     """Return what a folder answers; None where that is nothing asked, or, with the defects, something is wrong."""
-    document = read_document(folder / FILE, EXPORT)
     before = len(defects)
-    pack = document.content.get("pack")
+    content = read_document(folder / FILE, EXPORT, defects)
+    pack = content.get("pack")
     if pack is not None and pack not in packs():
         rule = f"must be one of {', '.join(packs())}, this pack and earlier ones"
-        defects.add(document.place, rule, field="pack", value=repr(pack), advice=EXPORT)
+        defects.add(Place(folder / FILE), rule, field="pack", value=repr(pack), advice=EXPORT)
         pack = None
-    data = checked(document, AnswersData, FILLED_IN, defects)
+    data = checked(folder / FILE, content, defects)
     for field in ("program", "version"):
-        text = document.content.get(field)
+        text = content.get(field)
         if isinstance(text, str) and text.strip() and not folder_name(text):
             rule = "must hold a letter or digit of ASCII, for the name of its folder"
-            defects.add(document.place, rule, field=field, value=repr(text))
+            defects.add(Place(folder / FILE), rule, field=field, value=repr(text))
     # tables of an unknown pack are checked by this one, so that all defects are told at once
-    answers = _answers(folder, document, pack or PACK, own, defects, step)
+    answers = _answers(folder, content, pack or PACK, own, defects)
     if len(defects) == before and not answers and own is None:
         defects.add(Place(folder), UNANSWERED, value="none that is filled in")
     return AnswerSet(folder, data, answers) if data is not None and answers and len(defects) == before else None
 
 
 def _answers(
-    folder: Path,
-    document: Document,
-    pack: str,
-    own: Mapping[str, Problem] | None,
-    defects: Defects,
-    step: Callable[[str], None],
+    folder: Path, content: Mapping[str, Any], pack: str, own: Mapping[str, Problem] | None, defects: Defects
 ) -> tuple[Answer, ...]:
     """Return the answers of a folder's tables; a table that is not filled in is none."""
+    place = Place(folder / FILE)
     digests: Mapping[str, Any] = packs()[pack] if own is None else own
     this_pack: Mapping[str, Any] = packs()[PACK] if own is None else own
-    later: list[str] = []  # tables of problems that the stated pack did not have yet
-    withheld_by_name = document.content.get("not_reported")
+    withheld_by_name = content.get("not_reported")
     if not isinstance(withheld_by_name, dict):
         withheld_by_name = {}
     answers: dict[str, Answer] = {}
@@ -193,66 +179,59 @@ def _answers(
         name = path.name.removesuffix(TABLE)
         if own is not None and name not in own and name in packs()[PACK]:
             continue  # it answers a problem that is not asked
-        is_later = name not in digests and name in this_pack
-        if name not in digests and not is_later:
+        if name not in digests and name not in this_pack:
             advice = did_you_mean(name.lower(), digests, TABLE) or f"problems are {', '.join(digests)}"
             whose = f"of pack {pack}" if own is None else "that is asked"
             defects.add(Place(path), f"must be named after a problem {whose}", value=path.name, advice=advice)
             continue
-        reason = None if is_later or own is not None else stale(pack, name)
+        reason = stale(pack, name) if own is None and name in digests else None
         if reason is not None:
             answers[name] = Answer(name, None, None, Status.STALE, reason)
             continue
-        step(name)
         posed = problem(name) if own is None else own[name]
-        columns = _reported(document, f"not_reported.{name}", withheld_by_name.get(name, []), posed, defects)
-        known_defects = len(defects)
+        columns = _reported(place, f"not_reported.{name}", withheld_by_name.get(name, []), posed, defects)
         history = read_answer(path, posed, defects, columns) if columns else None
-        if is_later and (history is not None or len(defects) > known_defects):
-            later.append(path.name)
-        if history is not None:
-            answers[name] = Answer(name, posed, history)
-    if later:
-        more = f" and {len(later) - 1} more" if len(later) > 1 else ""
-        rule = f"must be {PACK}, from which on the pack holds {later[0]}{more}"
-        defects.add(document.place, rule, field="pack", value=repr(pack))
+        if history is None:
+            continue
+        answers[name] = Answer(name, posed, history)
+        if name not in digests and not defects.has(place.path, "pack"):
+            rule = f"must be {PACK}, since the stated pack does not hold {path.name} yet"
+            defects.add(place, rule, field="pack", value=repr(pack))
     names = [path.name for path in tables]
     for field in ("not_reported", "step_s"):
         # Of a folder that answers more than is asked all is stated.
-        _check_problems(document, field, {**packs()[pack], **packs()[PACK], **(own or {})}, names, defects)
+        known = {**packs()[pack], **packs()[PACK], **(own or {})}
+        _check_problems(place, field, content.get(field), known, names, defects)
     order = [*names_of_pack(), *sorted(set(answers) - set(names_of_pack()))]
     return tuple(answers[name] for name in order if name in answers)
 
 
-def _reported(document: Document, field: str, withheld: object, posed: Problem, defects: Defects) -> list[str]:
+def _reported(place: Place, field: str, withheld: object, posed: Problem, defects: Defects) -> list[str]:
     """Return the columns of the history that a table has to hold; none, and the defects, where that is not clear."""
     if not isinstance(withheld, Sequence) or isinstance(withheld, str):  # a defect of its type, which is known
         return []
     names = [posed.named(column) for column in posed.columns]
     before = len(defects)
-    for i, name in enumerate(withheld):
+    for name in withheld:
         if name not in names:
-            defects.add(document.place, f"must be among {', '.join(names)}", field=field, value=repr(name))
-        elif name in withheld[:i]:
-            defects.add(document.place, "must not repeat a column", field=field, value=repr(name))
+            defects.add(place, f"must be among {', '.join(names)}", field=field, value=repr(name))
     remaining = [column for column in posed.columns if posed.named(column) not in withheld]
     if not remaining:
         rule = "must leave a column to judge"
-        defects.add(document.place, rule, field=field, value=f"all of {', '.join(names)}")
+        defects.add(place, rule, field=field, value=f"all of {', '.join(names)}")
     return remaining if len(defects) == before else []
 
 
 def _check_problems(
-    document: Document, field: str, known: Mapping[str, Any], tables: Sequence[str], defects: Defects
+    place: Place, field: str, stated: object, known: Mapping[str, Any], tables: Sequence[str], defects: Defects
 ) -> None:
     """Add a defect for each problem that a field names and no table answers."""
-    stated = document.content.get(field)
     for name in stated if isinstance(stated, dict) else ():
         if name not in known:
             rule = f"{name}: must be among {', '.join(known)}"
-            defects.add(document.place, rule, field=field, advice=did_you_mean(name, known))
+            defects.add(place, rule, field=field, advice=did_you_mean(name, known))
         elif name + TABLE not in tables:
-            defects.add(document.place, f"{name}: must have a table {name}{TABLE}", field=field, value="no such file")
+            defects.add(place, f"{name}: must have a table {name}{TABLE}", field=field, value="no such file")
 
 
 def _check_once(sets: Sequence[AnswerSet], defects: Defects) -> None:
@@ -374,6 +353,6 @@ def _same_files(answer_set: AnswerSet, place: Path) -> bool:
     """Whether a place holds the files of a folder of answers and no other answer."""
     if not place.is_dir():
         return False
-    files = {path.name: path.read_bytes() for path in _kept_files(answer_set)}
-    present_files = {path.name: path.read_bytes() for path in [place / FILE, *_tables(place)] if path.is_file()}
-    return files == present_files
+    names = [path.name for path in [*_kept_files(answer_set), *_tables(place)]]
+    same, _, _ = filecmp.cmpfiles(answer_set.place, place, names, shallow=False)
+    return same == names
