@@ -16,7 +16,7 @@ from validation.diagnosis.fits.fit import NAMED
 from validation.diagnosis.hooks import DiagnosisHooks
 from validation.diagnosis.sentences import scheme_words
 from validation.errors import InputError
-from validation.problems.bands import Standard, definition_of, scene_of
+from validation.problems.bands import Standard
 from validation.problems.truth import truth_of
 from validation.runs.history import Array, History
 from validation.runs.run import Outcome
@@ -61,13 +61,9 @@ class Base:
 
 
 @functools.lru_cache(maxsize=2)
-def _runs(definition: str, reference: Standard) -> Runs:
-    return Runs(scene_of(definition), reference)
-
-
 def runs_of(scene: Scene, reference: Standard) -> Runs:
     """Return the runs of a scene, shared by all answers that are judged by one standard."""
-    return _runs(definition_of(scene), reference)
+    return Runs(scene, reference)
 
 
 @dataclass(eq=False)
@@ -80,8 +76,7 @@ class Runs:
 
     def dense(self, base: Base, values: Mapping[str, Any] | None = None) -> History | None:
         """Return a run at its own steps with other data, None where its solver cannot run it."""
-        stepped = self._stepped(base, values or {})
-        return _run_by(self.scene, stepped, base.solver) if base.solver else _run(self.scene, stepped)
+        return _run_by(self.scene, self._stepped(base, values or {}), base.solver or by_role(Role.JUDGED)[0])
 
     def _stepped(self, base: Base, values: Mapping[str, Any]) -> dict[str, Any]:
         t = self.scene.time
@@ -155,10 +150,6 @@ class Runs:
                 values = {"time.alpha": pair[0], "time.delta": pair[1], "time.start": "consistent"}
                 words = f"{scheme_words(*pair, t.discount)} at a step of {t.step / every:g} s"
                 yield Base(words, values, every)
-
-
-def _run(scene: Scene, values: Mapping[str, Any]) -> History | None:
-    return _run_by(scene, values, by_role(Role.JUDGED)[0])
 
 
 def _run_by(scene: Scene, values: Mapping[str, Any], name: str) -> History | None:
