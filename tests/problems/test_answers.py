@@ -337,10 +337,11 @@ def test_positions_of_boxes_are_measured(tmp_path):
     told = []
     (judged,) = judged_sets(read_sets(place), lambda *given: told.append(given[:2]))
     assert told == [(0, 3), (1, 3), (2, 3)]
-    words = {name: str(one.judgement.status) for name, one in judged.judged.items()}
+    judged = {one.name: one for one in judged.answers}
+    words = {name: str(one.judgement.status) for name, one in judged.items()}
     assert words == {"standing": "PASS", "standing-friction-19-deg": "FAIL", "pile": "PASS"}
     # Forces are not asked: what is measured on them alone is not among the numbers.
-    assert len(judged.judged["pile"].judgement.criteria) == 2
-    assert "slid" in judged.judged["standing-friction-19-deg"].judgement.deciding.name
+    assert len(judged["pile"].judgement.criteria) == 2
+    assert "slid" in judged["standing-friction-19-deg"].judgement.deciding.name
     boxes_answered(place, "standing", 1e3)
     assert [field for _, field, _ in defects_of(place)] == ["box.y_m"]

@@ -74,6 +74,11 @@ class AnswerSet:
         """Names of the three folders of the layout."""
         return folder_name(self.data.program), folder_name(self.data.version), self.data.settings_name
 
+    @property
+    def stem(self) -> str:
+        """What the names of its files have in common; names of folders hold no underscore."""
+        return "_".join(filter(None, self.address))
+
 
 def folder_name(text: str) -> str:
     """Return a text as the name of a folder: small letters, digits, points, plus and minus signs; of others nothing."""
