@@ -70,13 +70,13 @@ def test_schemas_and_the_page_are_those_of_the_pack(written):
 
 @pytest.fixture
 def short_pack(monkeypatch):
-    """Let export-pack write its first page only."""
+    """Let export-pack write its mark only."""
 
-    def write_page(place, progress):
-        (place / "README.md").write_text(pack.PAGE.read_text())
+    def write_mark(place, progress):
+        (place / pack.MARK).write_text("{}")
         return 7
 
-    monkeypatch.setattr(pack, "write_pack", write_page)
+    monkeypatch.setattr(pack, "write_pack", write_mark)
 
 
 @pytest.mark.usefixtures("short_pack")
@@ -85,16 +85,15 @@ def test_an_earlier_pack_is_replaced_as_a_whole_and_nothing_else(tmp_path):
     assert "7" in typed("export-pack", place).stdout.removeprefix(f"wrote {place}")
     (place / "old.csv").write_text("1")
     assert typed("export-pack", place).returncode == 0
-    assert [path.name for path in place.iterdir()] == ["README.md"]
+    assert [path.name for path in place.iterdir()] == [pack.MARK]
     assert [path.name for path in tmp_path.iterdir()] == ["pack"]
 
 
 def test_a_users_directory_is_not_written_to(tmp_path):
     (tmp_path / "README.md").write_text("# Mine\n")
     for place in (tmp_path, tmp_path / "README.md"):
-        with pytest.raises(InputError) as refusal:
-            pack.check_place(place)
-        assert refusal.value.source == place
+        done = typed("export-pack", place)
+        assert done.returncode == 2 and f"error: {place}: must be a" in done.stderr
 
 
 def test_the_folder_for_all_problems_is_read_when_it_is_filled_in(written, tmp_path):

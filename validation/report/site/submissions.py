@@ -27,8 +27,7 @@ from validation.report.chapters.answers import (
 )
 from validation.report.chapters.judged import page
 from validation.report.render import html
-from validation.report.site.places import check_place, write
-from validation.runs.files import atomic_directory
+from validation.runs.files import atomic_directory, check_place, write_new
 from validation.runs.progress import Progress
 from validation.runs.text import visible
 from validation.suite.judging import JudgedAnswer
@@ -66,15 +65,15 @@ def write_site(sets: Sequence[AnswerSet], out: Path, progress: Progress) -> Path
         for number, judged in enumerate(ordered):
             progress(number, total, f"page of {judged.title}")
             site.curves(judged)
-            write(place / f"badge_{judged.stem}.svg", set_badge(judged))
+            write_new(place / f"badge_{judged.stem}.svg", set_badge(judged))
         for number, name in enumerate(programs, start=len(ordered)):
             progress(number, total, f"page of {name}")
             site.program(name)
         progress(total - 1, total, "first page")
         site.index()
-        write(place / VERDICTS, json.dumps(verdicts(ordered), indent=1, allow_nan=False) + "\n")
+        write_new(place / VERDICTS, json.dumps(verdicts(ordered), indent=1, allow_nan=False) + "\n")
         for name in (html.STYLE, html.SCRIPT):
-            write(place / name, html.static(name))
+            write_new(place / name, html.static(name))
     return out / "index.html"
 
 
@@ -98,7 +97,7 @@ class Site:
             title, [Heading(title), *blocks], file=file, name="Answers to the problems", menu=self._menu,
             imprint=imprint(), figure=lambda figure: f"{file.removesuffix('.html')}/{figure}",
         )  # fmt: skip
-        write(self._place / file, text)
+        write_new(self._place / file, text)
 
     def index(self) -> None:
         """Write the first page: problems against programs with versions and settings."""
