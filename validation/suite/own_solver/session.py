@@ -21,7 +21,7 @@ from validation.runs.run import Outcome
 from validation.solvers.foreign import SAME_AS
 from validation.solvers.registry import get_solver
 from validation.suite.folders import judged_studies
-from validation.suite.matrix import JUDGED, CaseInPlace
+from validation.suite.matrix import JUDGED, in_place, reported
 from validation.suite.own_solver import gates, history
 
 REPEATED, SHORT = 2, 1000  # scenes that are run twice, and the most steps of one
@@ -88,7 +88,7 @@ class GateRuns:
     def _case(self, case: Case, kept: Container[str]) -> Case:
         """Return a case with who answers it; the suite's own with the metrics that gates ask for, or of a kept row."""
         if self.solver != JUDGED:
-            return CaseInPlace(**vars(case), answered_by=self.solver) if case.solver == JUDGED else case
+            return in_place(case, self.solver)
         required_metrics = gates.asked(self.studies).get((case.scene.name, case.solver), frozenset())
         return case if case.key() in kept else replace(case, only=required_metrics)
 
@@ -147,10 +147,7 @@ class Session(GateRuns):
         own_history = self._history(case.scene.name)
         if own_history is not None and gates.shown_by_history(gate, case.scene) and self._by_history(study, gate, row):
             return judge(*history.shown(judged, case.scene, own_history))
-        verdict = replace(self.verdict(study, gate), gate=judged)
-        if verdict.value == NOT_REPORTED:
-            return replace(verdict, status=Status.NOT_RUN, why=f"the solver does not report {gate.metric}")
-        return verdict
+        return replace(reported(self.verdict(study, gate)), gate=judged)
 
     def _history(self, scene: str, solver: str = JUDGED) -> History | None:
         return Finished(self.rows, self.results).history(scene, solver)
