@@ -70,6 +70,8 @@ def test_an_answer_to_a_problem_that_changed_is_stale_and_the_others_stand(tmp_p
     ((stale, *others),) = [one.answers for one in read_sets(tmp_path)]
     assert stale.name == "locked" and stale.history is None and "1.9" in stale.reason
     assert [answer.status for answer in others] == [None, None]
+    ((asked,),) = [one.answers for one in read_sets(tmp_path, own={"locked": problem("locked")})]
+    assert asked.reason == stale.reason
     early = answered(tmp_path / "early", pack="1.8")
     assert [(field, value) for _, field, value in defects_of(early)] == [("pack", "'1.8'")]  # without a column yet
     (early / "column.csv").write_text(blank_table(problem("column")))

@@ -9,7 +9,7 @@ import filecmp
 import os
 import re
 import shutil
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -173,23 +173,22 @@ def _answers(
 ) -> tuple[Answer, ...]:
     """Return the answers of a folder's tables; a table that is not filled in is none."""
     place = Place(folder / FILE)
-    digests: Mapping[str, Any] = packs()[pack] if own is None else own
-    this_pack: Mapping[str, Any] = packs()[PACK] if own is None else own
+    asked_then = packs()[pack]
+    known: dict[str, Any] = {**asked_then, **packs()[PACK], **(own or {})}
     withheld_by_name = content.get("not_reported")
     if not isinstance(withheld_by_name, dict):
         withheld_by_name = {}
     answers: dict[str, Answer] = {}
-    tables = _tables(folder)
-    for path in tables:
-        name = path.name.removesuffix(TABLE)
-        if own is not None and name not in own and name in packs()[PACK]:
-            continue  # it answers a problem that is not asked
-        if name not in digests and name not in this_pack:
-            advice = did_you_mean(name.lower(), digests, TABLE) or f"problems are {', '.join(digests)}"
-            whose = f"of pack {pack}" if own is None else "that is asked"
-            defects.add(Place(path), f"must be named after a problem {whose}", value=path.name, advice=advice)
+    tables = {path.name.removesuffix(TABLE): path for path in _tables(folder)}
+    for name, path in tables.items():
+        if name not in known:
+            advice = did_you_mean(name.lower(), known, TABLE) or f"problems are {', '.join(known)}"
+            rule = f"must be named after a problem of pack {pack}, or one that is asked"
+            defects.add(Place(path), rule, value=path.name, advice=advice)
             continue
-        reason = stale(pack, name) if own is None and name in digests else None
+        if own is not None and name not in own:
+            continue
+        reason = stale(pack, name) if name in asked_then else None
         if reason is not None:
             answers[name] = Answer(name, None, None, Status.STALE, reason)
             continue
@@ -199,16 +198,12 @@ def _answers(
         if history is None:
             continue
         answers[name] = Answer(name, posed, history)
-        if name not in digests and not defects.has(place.path, "pack"):
+        if name in packs()[PACK] and name not in asked_then and not defects.has(place.path, "pack"):
             rule = f"must be {PACK}, since the stated pack does not hold {path.name} yet"
             defects.add(place, rule, field="pack", value=repr(pack))
-    names = [path.name for path in tables]
     for field in ("not_reported", "step_s"):
-        # Of a folder that answers more than is asked all is stated.
-        known = {**packs()[pack], **packs()[PACK], **(own or {})}
-        _check_problems(place, field, content.get(field), known, names, defects)
-    order = [*names_of_pack(), *sorted(set(answers) - set(names_of_pack()))]
-    return tuple(answers[name] for name in order if name in answers)
+        _check_problems(place, field, content.get(field), known, tables, defects)
+    return tuple(answers[name] for name in dict.fromkeys([*names_of_pack(), *answers]) if name in answers)
 
 
 def _reported(place: Place, field: str, withheld: object, posed: Problem, defects: Defects) -> list[str]:
@@ -228,14 +223,14 @@ def _reported(place: Place, field: str, withheld: object, posed: Problem, defect
 
 
 def _check_problems(
-    place: Place, field: str, stated: object, known: Mapping[str, Any], tables: Sequence[str], defects: Defects
+    place: Place, field: str, stated: object, known: Collection[str], tables: Collection[str], defects: Defects
 ) -> None:
     """Add a defect for each problem that a field names and no table answers."""
     for name in stated if isinstance(stated, dict) else ():
         if name not in known:
             rule = f"{name}: must be among {', '.join(known)}"
             defects.add(place, rule, field=field, advice=did_you_mean(name, known))
-        elif name + TABLE not in tables:
+        elif name not in tables:
             defects.add(place, f"{name}: must have a table {name}{TABLE}", field=field, value="no such file")
 
 
@@ -262,7 +257,7 @@ def read_tables(place: Path, problems: Sequence[Problem], header: HeaderNames = 
     answers = []
     for posed in problems:
         path = place / f"{posed.name}{TABLE}" if place.is_dir() else place
-        if path.exists() or not place.is_dir():
+        if path.exists():
             history = read_answer(path, posed, defects, header=header)
             if history is not None:
                 answers.append(Answer(posed.name, posed, history))
