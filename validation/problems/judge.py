@@ -9,6 +9,7 @@ import numpy as np
 
 from validation.gates.gate import Status
 from validation.metrics.pairs import relative_l2
+from validation.metrics.values import as_number
 from validation.problems.bands import Band, Standard, standard
 from validation.problems.numbered import ROUNDING
 from validation.problems.problem import Problem
@@ -141,7 +142,8 @@ def _judged(name: str, values: Array | None, reference: Standard) -> Criterion:
         return Criterion(name, Status.NOT_JUDGED, None, None, 0.0, _without_band(name, reference))
     if values is None:
         return Criterion(name, Status.NOT_REPORTED, None, band.high, band.until, band.reason, datum=band.datum)
-    error = error_of(values, reference.exact.columns[name], band)
+    with np.errstate(all="ignore"):
+        error = as_number(relative_l2(values[: band.rows], reference.exact.columns[name][: band.rows]))
     inside = error <= band.high * (1 + ROUNDING)
     status = Status.PASS if inside else Status.FAIL
     within = band.until if inside else _within_until(values, reference.exact, name, band)
@@ -164,13 +166,3 @@ def _without_band(name: str, reference: Standard) -> str:
     if not np.any(exact):
         return "it does not move in the exact motion, which leaves nothing to divide an error by"
     return "one per cent of the scene's data changes it more than anything could be judged by"
-
-
-def error_of(values: Array, exact: Array, band: Band) -> float:
-    """Return the relative L2 error over the judged rows; infinite where a value is not finite."""
-    judged, expected = values[: band.rows], exact[: band.rows]
-    if not np.isfinite(judged).all():
-        return math.inf
-    with np.errstate(over="ignore"):
-        error = relative_l2(judged, expected)
-    return error if isinstance(error, float) else math.inf
