@@ -9,7 +9,7 @@ from __future__ import annotations
 import importlib.util
 import os
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from importlib.machinery import PathFinder
 from pathlib import Path
@@ -109,25 +109,18 @@ class UserSolver(Outside):
 
     def check_module(self) -> None:
         """Refuse by an `InputError` a module that is nowhere where its process looks; nothing is imported for it."""
-        module = self.target.partition(":")[0]
-        folders: Sequence[str] | None = [os.getcwd(), *filter(None, sys.path)]
-        parts = module.split(".")
-        for depth, part in enumerate(parts):
-            name = ".".join(parts[: depth + 1])
-            spec = None if folders is None else PathFinder.find_spec(name, folders)
-            if spec is None and depth == 0:
-                spec = importlib.util.find_spec(part)  # what an editable install finds by a hook of its own
-            if spec is None:
-                stated = [os.getcwd(), *filter(None, os.environ.get("PYTHONPATH", "").split(os.pathsep))]
-                looked_in = f"looked in {', '.join(stated)} and the installed packages"
-                plain = ", without .py" if parts[-1] == "py" else ""
-                raise InputError(
-                    f"must be a module that Python finds{plain}",
-                    field="solver",
-                    value=repr(self.name),
-                    advice=looked_in,
-                )
-            folders = None if spec.submodule_search_locations is None else [*spec.submodule_search_locations]
+        first, *inner = self.target.partition(":")[0].split(".")
+        spec = PathFinder.find_spec(first, [os.getcwd(), *filter(None, sys.path)])
+        if spec is None:
+            spec = importlib.util.find_spec(first)  # what an editable install finds by a hook of its own
+        for part in inner:
+            folders = None if spec is None else spec.submodule_search_locations
+            spec = PathFinder.find_spec(part, folders) if folders else None
+        if spec is None:
+            stated = [os.getcwd(), *filter(None, os.environ.get("PYTHONPATH", "").split(os.pathsep))]
+            rule = f"must be a module that Python finds{', without .py' if inner[-1:] == ['py'] else ''}"
+            looked_in = f"looked in {', '.join(stated)} and the installed packages"
+            raise InputError(rule, field="solver", value=repr(self.name), advice=looked_in)
 
     def check_loads(self) -> None:
         """Refuse by an `InputError` what is nowhere, or cannot be loaded."""

@@ -121,15 +121,9 @@ def applying() -> Mapping[str, tuple[str, Gate]]:
     """
     by_id: dict[str, tuple[str, Gate]] = {}
     for study in judged_studies():
-        if _has_blocks(study) and any(map(_is_two_blocks, cases(study).values())):
+        if any(map(_is_two_blocks, cases(study).values())):
             by_id |= {gate.id: (study, gate) for gate in get_study(study).gates() if applies(study, gate)}
     return by_id | {gate.id: (START.name, gate) for gate in START.gates()}
-
-
-def _has_blocks(study: str) -> bool:
-    """Whether a study has a scene of a block, told before its cases are made."""
-    scenes = (load_scene(declared) if isinstance(declared, str) else declared for declared in study_of(study).scenes)
-    return any(not scene.kind.feature for scene in scenes)
 
 
 @functools.cache
