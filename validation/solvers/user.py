@@ -105,7 +105,7 @@ class UserSolver(Outside):
 
     def parts(self) -> frozenset[str]:
         """Return what the solver can report beside its history; all that one may where it cannot even be imported."""
-        return frozenset(self._asked({"parts": sorted(REPORTABLE)}).get("parts", REPORTABLE))
+        return frozenset(self._introduced().get("parts", REPORTABLE))
 
     def check_module(self) -> None:
         """Refuse by an `InputError` a module that is nowhere where its process looks; nothing is imported for it."""
@@ -125,18 +125,19 @@ class UserSolver(Outside):
     def check_loads(self) -> None:
         """Refuse by an `InputError` what is nowhere, or cannot be loaded."""
         self.check_module()
-        answer = self._asked({"parts": []})
+        answer = self._introduced()
         if "raised" in answer:
             reason = one_line(str(answer["raised"]))
             raise InputError(f"cannot be loaded: {reason}", field="solver", value=repr(self.name))
 
     def about(self) -> dict[str, str]:
         """Return what the solver says of itself under `ABOUT`; nothing where it says nothing or cannot be imported."""
-        statements = self._asked({"about": list(ABOUT)}).get("about") or {}
-        return {name: one_line(str(text)) for name, text in dict(statements).items()}
+        statements = self._introduced().get("about", {})
+        return {name: one_line(str(text)) for name, text in statements.items()}
 
-    def _asked(self, request: dict[str, Any]) -> dict[str, Any]:
-        """Return the answer to a request that runs no scene; a worker that dies or hangs has "raised" that."""
+    def _introduced(self) -> dict[str, Any]:
+        """Return what the solver has beside a history and says of itself; one that dies or hangs has "raised" that."""
+        request = {"parts": sorted(REPORTABLE), "about": ABOUT}
         try:
             return ask(self.command(), environment(), request, base_limit())
         except (WorkerHangs, WorkerDied) as error:
