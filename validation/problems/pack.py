@@ -53,11 +53,7 @@ CHOSEN = ("settings_name",)  # of these, what may stay as the template has it
 
 def problem_data(posed: Problem) -> ProblemData:
     """Return a problem as plain data."""
-    numbers = []
-    for number in posed.numbers:
-        if not number.optional:
-            band = {"exact": number.exact, "low": number.low, "high": number.high}
-            numbers.append(NumberData(name=number.name, unit=number.unit, reason=number.reason, **band))
+    numbers = [number for number in posed.numbers if not number.optional]
     return ProblemData(
         problem=posed.name,
         digest=digest(posed),
@@ -66,7 +62,7 @@ def problem_data(posed: Problem) -> ProblemData:
         scene=scene_data(posed.scene),
         sampling=SamplingData(step_s=posed.scene.time.step, count=len(posed.instants)),
         answer=tuple(_column_data(posed, column) for column in posed.columns),
-        numbers=tuple(numbers),
+        numbers=tuple(NumberData.model_validate(number, from_attributes=True) for number in numbers),
         exact=None if posed.numbers else f"exact/{posed.name}.csv",
     )
 
