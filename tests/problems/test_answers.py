@@ -10,9 +10,9 @@ from oracles.answers import QUICK, STATED, answered, stated
 from validation.errors import InputError
 from validation.models.plane.boxes import boxes_of
 from validation.problems import packs
-from validation.problems.answers import FILE, folder_name, keep, read_sets, read_tables
+from validation.problems.answers import FILE, keep, read_sets, read_tables
 from validation.problems.bands import standard
-from validation.problems.data import PACK
+from validation.problems.data import PACK, folder_name
 from validation.problems.pack import ANSWERS_TEMPLATE, blank_table, table_of
 from validation.problems.problem import problem, problem_of
 from validation.runs.defects import DefectsError

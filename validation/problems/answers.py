@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import filecmp
 import os
-import re
 import shutil
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -17,7 +16,7 @@ from typing import Any
 from validation.errors import InputError
 from validation.gates.gate import Status
 from validation.problems.bands import standard
-from validation.problems.data import PACK, AnswersData
+from validation.problems.data import PACK, AnswersData, folder_name
 from validation.problems.packs import packs, stale
 from validation.problems.problem import Problem, ProblemHooks, problem
 from validation.problems.problem import names as names_of_pack
@@ -80,11 +79,6 @@ class AnswerSet:
         return "_".join(filter(None, self.address))
 
 
-def folder_name(text: str) -> str:
-    """Return a text as the name of a folder: small letters, digits, points, plus and minus signs; of others nothing."""
-    return re.sub(r"[^a-z0-9.+]+", "-", text.lower()).strip("-.")
-
-
 # ---- reading ----
 
 
@@ -110,6 +104,7 @@ def read_sets(
     if not folders:
         raise InputError(f"must be a directory with {FILE} and CSV files, or of such", source=root, advice=EXPORT)
     sets: list[AnswerSet] = []
+    places: dict[tuple[str, str, str], Path] = {}
     for number, folder in enumerate(folders):
         progress(number, len(folders), f"reading {folder.name}")
         try:
@@ -117,12 +112,16 @@ def read_sets(
         except InputError as error:
             defects.take(error)
             continue
-        if answer_set is not None:
-            sets.append(answer_set)
-            if in_layout and folder.relative_to(root).parts != answer_set.address:
-                rule = f"must lie in {'/'.join(answer_set.address)}, by its program, version and settings_name"
-                defects.add(Place(folder), rule)
-    _check_once(sets, defects)
+        if answer_set is None:
+            continue
+        sets.append(answer_set)
+        if in_layout and folder.relative_to(root).parts != answer_set.address:
+            rule = f"must lie in {'/'.join(answer_set.address)}, by its program, version and settings_name"
+            defects.add(Place(folder), rule)
+        first = places.setdefault(answer_set.address, folder)
+        if first != folder:
+            rule = "must have another settings_name, or another version"
+            defects.add(Place(folder / FILE), rule, value=f"those of {first}")
     if not sets and not len(defects):
         defects.add(Place(root), UNANSWERED, value="none that is asked")
     defects.check()
@@ -134,16 +133,12 @@ def _folders(root: Path) -> Iterator[Path]:
     for directory, names, files in os.walk(root):
         depth = len(Path(directory).relative_to(root).parts)
         names[:] = sorted(name for name in names if not name.startswith(".")) if depth < DEEPEST else []
-        if FILE in files or any(_is_table(name) for name in files):
+        if FILE in files or _tables(Path(directory)):
             yield Path(directory)
 
 
-def _is_table(name: str) -> bool:
-    return name.lower().endswith(TABLE) and not name.startswith(".")
-
-
 def _tables(folder: Path) -> list[Path]:
-    return sorted(path for path in folder.iterdir() if _is_table(path.name))
+    return sorted(path for path in folder.iterdir() if path.suffix.lower() == TABLE and not path.name.startswith("."))
 
 
 def _read_set(folder: Path, own: Mapping[str, Problem] | None, defects: Defects) -> AnswerSet | None:
@@ -156,11 +151,6 @@ def _read_set(folder: Path, own: Mapping[str, Problem] | None, defects: Defects)
         defects.add(Place(folder / FILE), rule, field="pack", value=repr(pack), advice=EXPORT)
         pack = None
     data = checked(folder / FILE, content, defects)
-    for field in ("program", "version"):
-        text = content.get(field)
-        if isinstance(text, str) and text.strip() and not folder_name(text):
-            rule = "must hold a letter or digit of ASCII, for the name of its folder"
-            defects.add(Place(folder / FILE), rule, field=field, value=repr(text))
     # tables of an unknown pack are checked by this one, so that all defects are told at once
     answers = _answers(folder, content, pack or PACK, own, defects)
     if len(defects) == before and not answers and own is None:
@@ -232,17 +222,6 @@ def _check_problems(
             defects.add(place, rule, field=field, advice=did_you_mean(name, known))
         elif name not in tables:
             defects.add(place, f"{name}: must have a table {name}{TABLE}", field=field, value="no such file")
-
-
-def _check_once(sets: Sequence[AnswerSet], defects: Defects) -> None:
-    """Add a defect for each folder that stands for the same program, version and settings as another."""
-    known: dict[tuple[str, str, str], Path] = {}
-    for answer_set in sets:
-        if answer_set.address in known:
-            rule = "must have another settings_name, or another version"
-            other = f"those of {known[answer_set.address]}"
-            defects.add(Place(answer_set.place / FILE), rule, value=other)
-        known.setdefault(answer_set.address, answer_set.place)
 
 
 def read_tables(place: Path, problems: Sequence[Problem], header: HeaderNames = AS_NAMED) -> AnswerSet:
