@@ -54,7 +54,6 @@ def test_problems_are_answered_by_the_files_of_the_pack(written, tmp_path):
 
 
 def test_problems_say_what_they_are_judged_by(written):
-    """Columns and numbers with their bands, instants and blocks."""
     stated = {name: json.loads((written / f"{name}.json").read_text()) for name in (*QUICK, *BOXES)}
     assert_kept(KEPT, "pack", {name: summed(said(data, 0.0)) for name, data in stated.items()})
 
@@ -97,7 +96,6 @@ def test_a_users_directory_is_not_written_to(tmp_path):
 
 
 def test_the_folder_for_all_problems_is_read_when_it_is_filled_in(written, tmp_path):
-    """As it is, every field of words is said to be blank; filled in, a table that is left blank is no answer."""
     place = tmp_path / "mine"
     shutil.copytree(written / "answers", place)
     with pytest.raises(DefectsError) as caught:
