@@ -257,7 +257,7 @@ def test_answers_are_kept_and_then_make_the_site(tmp_path, undrawn):
     [
         (("dda", "stoping"), "did you mean stopping?"),
         (("dda", "figures-3-5"), "did you mean figures-3-4?"),
-        (("mine", "--out", "mine"), "error: --out: "),
+        (("mine", "--out", "mine"), "error: mine: "),
         (("nowhere:solve", "locked"), "error: solver: "),
         (("installed",), "error: "),
     ],

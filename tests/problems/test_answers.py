@@ -10,9 +10,9 @@ from oracles.answers import QUICK, STATED, answered, stated
 from validation.errors import InputError
 from validation.models.plane.boxes import boxes_of
 from validation.problems import packs
-from validation.problems.answers import FILE, folder_name, keep, read_sets, read_tables
+from validation.problems.answers import FILE, keep, read_sets, read_tables
 from validation.problems.bands import standard
-from validation.problems.data import PACK
+from validation.problems.data import PACK, folder_name
 from validation.problems.pack import ANSWERS_TEMPLATE, blank_table, table_of
 from validation.problems.problem import problem, problem_of
 from validation.runs.defects import DefectsError
@@ -41,7 +41,7 @@ def test_settings_of_a_program_are_read_with_their_problems_in_the_order_of_the_
     (fine / "notes.txt").write_text("anything")
     told = []
     sets = read_sets(tmp_path, progress=lambda *done: told.append(done[:2]))
-    assert told == [(0, 4), (0, 4), (2, 4), (2, 4)]
+    assert told == [(0, 2), (1, 2)]
     assert names_of(sets) == [("coarse", ("locked", "column")), ("fine", ("rocking",))]
     assert [one.data.step_of("rocking") for one in sets] == [0.002, 1e-3]
     assert sets[1].data.step_of("locked") is None
@@ -70,6 +70,8 @@ def test_an_answer_to_a_problem_that_changed_is_stale_and_the_others_stand(tmp_p
     ((stale, *others),) = [one.answers for one in read_sets(tmp_path)]
     assert stale.name == "locked" and stale.history is None and "1.9" in stale.reason
     assert [answer.status for answer in others] == [None, None]
+    ((asked,),) = [one.answers for one in read_sets(tmp_path, own={"locked": problem("locked")})]
+    assert asked.reason == stale.reason
     early = answered(tmp_path / "early", pack="1.8")
     assert [(field, value) for _, field, value in defects_of(early)] == [("pack", "'1.8'")]  # without a column yet
     (early / "column.csv").write_text(blank_table(problem("column")))
@@ -337,10 +339,11 @@ def test_positions_of_boxes_are_measured(tmp_path):
     told = []
     (judged,) = judged_sets(read_sets(place), lambda *given: told.append(given[:2]))
     assert told == [(0, 3), (1, 3), (2, 3)]
-    words = {name: str(one.judgement.status) for name, one in judged.judged.items()}
+    judged = {one.name: one for one in judged.answers}
+    words = {name: str(one.judgement.status) for name, one in judged.items()}
     assert words == {"standing": "PASS", "standing-friction-19-deg": "FAIL", "pile": "PASS"}
     # Forces are not asked: what is measured on them alone is not among the numbers.
-    assert len(judged.judged["pile"].judgement.criteria) == 2
-    assert "slid" in judged.judged["standing-friction-19-deg"].judgement.deciding.name
+    assert len(judged["pile"].judgement.criteria) == 2
+    assert "slid" in judged["standing-friction-19-deg"].judgement.deciding.name
     boxes_answered(place, "standing", 1e3)
     assert [field for _, field, _ in defects_of(place)] == ["box.y_m"]

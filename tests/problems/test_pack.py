@@ -54,7 +54,6 @@ def test_problems_are_answered_by_the_files_of_the_pack(written, tmp_path):
 
 
 def test_problems_say_what_they_are_judged_by(written):
-    """Columns and numbers with their bands, instants and blocks."""
     stated = {name: json.loads((written / f"{name}.json").read_text()) for name in (*QUICK, *BOXES)}
     assert_kept(KEPT, "pack", {name: summed(said(data, 0.0)) for name, data in stated.items()})
 
@@ -70,13 +69,13 @@ def test_schemas_and_the_page_are_those_of_the_pack(written):
 
 @pytest.fixture
 def short_pack(monkeypatch):
-    """Let export-pack write its first page only."""
+    """Let export-pack write its mark only."""
 
-    def write_page(place, progress):
-        (place / "README.md").write_text(pack.PAGE.read_text())
+    def write_mark(place, progress):
+        (place / pack.MARK).write_text("{}")
         return 7
 
-    monkeypatch.setattr(pack, "write_pack", write_page)
+    monkeypatch.setattr(pack, "write_pack", write_mark)
 
 
 @pytest.mark.usefixtures("short_pack")
@@ -85,20 +84,18 @@ def test_an_earlier_pack_is_replaced_as_a_whole_and_nothing_else(tmp_path):
     assert "7" in typed("export-pack", place).stdout.removeprefix(f"wrote {place}")
     (place / "old.csv").write_text("1")
     assert typed("export-pack", place).returncode == 0
-    assert [path.name for path in place.iterdir()] == ["README.md"]
+    assert [path.name for path in place.iterdir()] == [pack.MARK]
     assert [path.name for path in tmp_path.iterdir()] == ["pack"]
 
 
 def test_a_users_directory_is_not_written_to(tmp_path):
     (tmp_path / "README.md").write_text("# Mine\n")
     for place in (tmp_path, tmp_path / "README.md"):
-        with pytest.raises(InputError) as refusal:
-            pack.check_place(place)
-        assert refusal.value.source == place
+        done = typed("export-pack", place)
+        assert done.returncode == 2 and f"error: {place}: must be a" in done.stderr
 
 
 def test_the_folder_for_all_problems_is_read_when_it_is_filled_in(written, tmp_path):
-    """As it is, every field of words is said to be blank; filled in, a table that is left blank is no answer."""
     place = tmp_path / "mine"
     shutil.copytree(written / "answers", place)
     with pytest.raises(DefectsError) as caught:

@@ -17,7 +17,7 @@ from validation.report.blocks import Paragraph
 from validation.report.chapters import answers
 from validation.report.chapters import judged as chapter
 from validation.runs.history import History
-from validation.suite.judging import JudgedAnswer, JudgedSet
+from validation.suite.judging import JudgedAnswer
 
 EXACT = made_history(0.1, [-1e-3, -2e-3, -3e-3], [1e6, 2e6, 3e6])
 ANSWER = made_history(0.1, [-1e-3, -1e-3, -2e-3, 9.0], [1e6, 1e6, 1e6, 9.0])  # one row longer
@@ -31,7 +31,9 @@ def judged():
     )
     found = Judgement("locked", criteria, (Quantity("first peak", "mm", 2.0, 3.0),))
     one = problem("locked")
-    return JudgedAnswer(Answer("locked", one, ANSWER), one, ANSWER, Standard(EXACT, {}, {}), found, Cause())
+    return JudgedAnswer(
+        name="locked", problem=one, history=ANSWER, standard=Standard(EXACT, {}, {}), judgement=found, cause=Cause()
+    )
 
 
 def test_the_page_has_errors_numbers_and_curves(kept, kept_figures, drawn, tmp_path):
@@ -57,8 +59,9 @@ def boxes():
     time = 0.1 * np.arange(1, 4)
     history = History(time, {name: 0.0 * time if name == "box.angle" else time for name in one.columns})
     return JudgedAnswer(
-        Answer("impact", one, history), one, history, None, Judgement("impact", criteria, numbers), None
-    )
+        name="impact", problem=one, history=history, standard=None,
+        judgement=Judgement("impact", criteria, numbers), cause=None,
+    )  # fmt: skip
 
 
 def partial():
@@ -119,12 +122,9 @@ def test_the_first_page_has_problems_against_programs_and_names_those_without_an
     away = Answer("locked", problem("locked"), None, Status.NOT_RUN, "it is away")
     old = Answer("gone", None, None, Status.FAIL, "stale")
     sets = [
-        JudgedSet(
-            AnswerSet(Path("mine"), mine, (replace(partial().answer, seconds=1.234), boxes().answer, old)),
-            {"locked": partial(), "impact": boxes()},
-        ),
-        JudgedSet(AnswerSet(Path("away"), stated_by("Away"), (away,)), {}),
-        JudgedSet(AnswerSet(Path("no"), stated_by("Other", who="you"), (replace(old, name="locked"),)), {}),
+        AnswerSet(Path("mine"), mine, (replace(partial(), seconds=1.234), boxes(), old)),
+        AnswerSet(Path("away"), stated_by("Away"), (away,)),
+        AnswerSet(Path("no"), stated_by("Other", who="you"), (replace(old, name="locked"),)),
     ]
     kept("answers", answers.first_page(sets))
     assert [answers.headline(one) for one in sets] == ["0 of 3 PASS, 2 FAIL, 1 PARTIAL", "0 of 1 PASS, 1 NOT RUN",

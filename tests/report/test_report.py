@@ -113,7 +113,7 @@ def told(words):
 def taken(seconds):
     """Return what answers that took some seconds each are said to have taken together."""
     answers = [SimpleNamespace(seconds=one, history=True) for one in seconds]
-    return chapters_answers._seconds(SimpleNamespace(answers=SimpleNamespace(answers=answers)))
+    return chapters_answers._seconds(SimpleNamespace(answers=answers))
 
 
 NUMBERS = [  # function, value, text

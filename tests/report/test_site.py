@@ -151,7 +151,7 @@ def test_bad_input_is_one_line(tmp_path):
     (tmp_path / "file").write_text("mine")
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "notes.txt").write_text("mine")
-    for out, named in (("file", "--out: "), ("mine", "--out: "), ("new", "nothing: ")):
+    for out, named in (("file", "file: "), ("mine", "mine: "), ("new", "nothing: ")):
         assert refused("report", "--site", out, "--results", "nothing", cwd=tmp_path).startswith(f"error: {named}")
     assert refused("report", "--docs", "x", cwd=tmp_path).startswith("error: --docs: ")
     assert {path.name for path in tmp_path.iterdir()} == {"file", "mine"}

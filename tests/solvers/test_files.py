@@ -10,6 +10,7 @@ import pytest
 from oracles.pages import ROOT
 
 from validation.engine.measure import completed
+from validation.errors import InputError
 from validation.runs.defects import Defects, DefectsError
 from validation.runs.history import History
 from validation.runs.results import Results
@@ -145,7 +146,7 @@ def test_a_solver_answers_in_one_of_a_few_forms():
 
 
 def test_a_solver_that_says_nothing_of_itself_has_nothing_to_say(monkeypatch):
-    solver = get_solver("mine:solve")
+    solver = get_solver("json:solve")
     asked = []
 
     def answer(command, environment, request, limit):
@@ -156,9 +157,11 @@ def test_a_solver_that_says_nothing_of_itself_has_nothing_to_say(monkeypatch):
 
     monkeypatch.setattr(user, "ask", answer)
     monkeypatch.setenv(VARIABLE, "9")
-    assert solver.load_error() == "no module" and solver.about() == {"program": "a b", "version": "3"}
-    assert solver.load_error() == "the end" and solver.about() == {}
-    assert [*asked[0][0], *asked[1][0]] == ["parts", "about"] and {limit for _, limit in asked} == {9.0}
+    for said, about in (("no module", {"program": "a b", "version": "3"}), ("the end", {})):
+        with pytest.raises(InputError, match=said):
+            solver.check_loads()
+        assert solver.about() == about
+    assert {*asked[0][0]} == {"parts", "about"} and {limit for _, limit in asked} == {9.0}
 
 
 def test_a_table_that_cannot_be_read_is_a_defect(tmp_path):

@@ -57,7 +57,7 @@ def test_every_request_is_answered_where_the_first_one_was(scene, tmp_path, monk
     answer = answering("my_solver:Reporting")
     here = os.getcwd()
     monkeypatch.chdir(tmp_path)
-    assert answer({"parts": ["static", "diagnostics"]}) == {"parts": ["static"]} and os.getcwd() == here
+    assert answer({"parts": ["static", "x"], "about": ()}) == {"parts": ["static"], "about": {}} and os.getcwd() == here
 
 
 def test_names(scene, monkeypatch):

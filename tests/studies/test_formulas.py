@@ -24,7 +24,7 @@ from validation.studies.waves import rows
 from validation.studies.waves.measure import Guide
 from validation.suite import judging
 from validation.suite.claims import Evidence
-from validation.suite.matrix import _reported
+from validation.suite.matrix import reported
 from validation.suite.own_solver.history import AT_REST, _bound, rest, root, shown
 from validation.theory import spectra
 from validation.theory import waves as theory_of_waves
@@ -175,6 +175,6 @@ def test_a_block_stands_that_rests_on_its_slope_and_does_not_slip():
 
 def test_what_a_solver_cannot_report_is_no_failure():
     gate = Gate("s", ("mine",), "m", 0.0, 1.0, "r")
-    assert _reported(Verdict(gate, NOT_REPORTED, Status.FAIL)).status is Status.NOT_RUN
+    assert reported(Verdict(gate, NOT_REPORTED, Status.FAIL)).status is Status.NOT_RUN
     failed = Verdict(gate, math.pi, Status.FAIL)
-    assert _reported(failed) is failed
+    assert reported(failed) is failed

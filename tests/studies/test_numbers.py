@@ -252,7 +252,7 @@ def test_what_is_told_of_a_users_solver_is_what_was_told():
     told["following"] = [*told["misread 0"], replace(statics, scene=rectangle.name)]
     told["warned"] = [
         *(replace(one, same_as="bar dda") for one in told["both"][:3]),
-        replace(told["both"][3], same_as="dda", repeated=True, apart_in="displacement", apart=0.0371),
+        replace(told["both"][3], same_as="dda", apart_in="displacement", apart=0.0371),
         *told["all"],
     ]
     blocks = {name: block(reports, every=name == "all") for name, reports in told.items()}

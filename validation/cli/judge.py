@@ -28,7 +28,6 @@ from validation.runs import extras
 if TYPE_CHECKING:
     from validation.problems.answers import AnswerSet
     from validation.problems.problem import Problem
-    from validation.suite.judging import JudgedSet
 
 ASKED = "judge --help names the problems, dda-validate list scenes the built-in scenes"
 INSTALLED = "installed"  # in the place of a source: all solvers that installed packages bring
@@ -204,7 +203,7 @@ def _refuse_inapplicable(answer_set: AnswerSet) -> None:
 
 def _judged_and_written(
     sets: Sequence[AnswerSet], out: Path | None, keep: Path | None, progress: Any
-) -> tuple[list[JudgedSet], list[str]]:
+) -> tuple[list[AnswerSet], list[str]]:
     """Judge answers, keep them and write their pages where that is asked for; return what was written in words."""
     from validation.problems import answers
     from validation.suite.judging import judged_sets
@@ -224,33 +223,33 @@ def _judged_and_written(
     return judged, written
 
 
-def _print(judged: Sequence[JudgedSet], as_json: bool) -> None:
+def _print(judged: Sequence[AnswerSet], as_json: bool) -> None:
     """Print one answer with what its verdict rests on, several as a table, those of several programs side by side."""
     from validation.report.chapters import answers
     from validation.report.chapters.judged import verdict_blocks
+    from validation.suite.judging import JudgedAnswer
 
     if as_json:
         echo_json(answers.verdicts(judged))
         return
-    if len(judged) > 1 and all(one.answers.place.name == str(one.answers.place) for one in judged):
+    if len(judged) > 1 and all(one.place.name == str(one.place) for one in judged):
         print_blocks([answers.answer_table(judged), *answers.reason_blocks(judged)])
         return
     for one in judged:
-        judged_answers = [*one.judged.values()]
-        if len(judged_answers) == len(one.answers.answers) == 1:
-            (answer,) = judged_answers
-            print_blocks(verdict_blocks(answer, f"{one.answers.program} on {answer.problem.name}: "))
+        answer = one.answers[0]
+        if len(one.answers) == 1 and isinstance(answer, JudgedAnswer):
+            print_blocks(verdict_blocks(answer, f"{one.program} on {answer.problem.name}: "))
         else:
             _print_set(one)
 
 
-def _print_set(judged: JudgedSet) -> None:
+def _print_set(judged: AnswerSet) -> None:
     """Print the verdict on each answer of a program, then how many passed."""
     from validation.gates.gate import Status
     from validation.report.blocks import TableColumn, table
     from validation.report.chapters.answers import answered, cells, headline
 
-    echo(f"{judged.answers.title}: {headline(judged)}\n")
+    echo(f"{judged.title}: {headline(judged)}\n")
     rows = []
     unanswered: dict[str, list[str]] = {}
     for cell in answered(judged):
@@ -268,13 +267,13 @@ def _print_set(judged: JudgedSet) -> None:
     echo(f"\n{missing} problems of the pack are not answered\n" if missing else "")
 
 
-def _status(judged: Sequence[JudgedSet], required: Sequence[str]) -> int:
+def _status(judged: Sequence[AnswerSet], required: Sequence[str]) -> int:
     """Return the exit status: PARTIAL is no PASS, since what is withheld may be what is wrong."""
     from validation.gates.gate import Status
     from validation.report.chapters.answers import summary
 
     for name in required:
-        of_solver = [one.answers.answers for one in judged if str(one.answers.place) == name]
+        of_solver = [one.answers for one in judged if str(one.place) == name]
         reasons = [answer.reason for answers in of_solver for answer in answers if answer.history is None]
         if not any(answer.history is not None for answers in of_solver for answer in answers):
             echo(
@@ -304,29 +303,18 @@ def all_defects() -> Iterator[None]:
 # ---- gates ----
 
 
-def check_loads(source: str) -> None:
-    """Raise InputError for a solver that cannot be loaded, before anything is run with it."""
-    from validation.solvers.registry import get_solver
-    from validation.solvers.user import UserSolver
-
-    solver = get_solver(source)
-    if isinstance(solver, UserSolver):
-        solver.check_module()
-        if reason := solver.load_error():
-            raise InputError(f"cannot be loaded: {reason}", field="SOLVER", value=repr(source))
-
-
 def _judge_by_gates(source: str, studies: Sequence[str], verbose: bool, as_json: bool) -> NoReturn:
     """Run the gates of studies with a solver in the place of dda, and print what they tell."""
     import tempfile
 
     from validation.gates.gate import Status
     from validation.runs.results import Results
+    from validation.solvers.registry import get_solver
     from validation.suite.own_solver.block import block, wrapped
     from validation.suite.own_solver.gates import applying
     from validation.suite.own_solver.session import Session, plain
 
-    check_loads(source)
+    get_solver(source).check_loads()
     known = list(dict.fromkeys(study for study, _ in applying().values()))
     for name in studies:
         if name not in (*known, "all"):

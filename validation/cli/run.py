@@ -320,11 +320,9 @@ def solve(
     from validation.runs.files import write_csv
     from validation.runs.run import Outcome
     from validation.solvers.registry import FULL, distributed, get_solver
-    from validation.solvers.user import UserSolver
 
     adapter = get_solver(solver)
-    if isinstance(adapter, UserSolver):
-        adapter.check_module()
+    adapter.check_module()
     if ranks > 1:
         if not adapter.distributed:
             raise InputError(f"goes with {', '.join(distributed())}", field="--ranks", value=repr(solver))

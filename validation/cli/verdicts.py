@@ -41,10 +41,10 @@ def export_pack(
 
     Example: [bold]dda-validate export-pack pack[/bold]
     """
-    from validation.problems.pack import check_place, write_pack
-    from validation.runs.files import atomic_directory
+    from validation.problems.pack import MARK, write_pack
+    from validation.runs.files import atomic_directory, check_place
 
-    check_place(directory)
+    check_place(directory, MARK, "pack")
     with atomic_directory(directory) as place, _progress("export-pack") as progress:
         problems = write_pack(place, progress)
     echo(f"wrote {directory}: {problems} problems for any program")

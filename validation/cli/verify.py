@@ -10,7 +10,6 @@ from typing import Annotated
 import typer
 
 from validation.cli.app import GATE_FAILED, PASSED, RESULTS, JsonOption, ResultsOption, _progress, app
-from validation.cli.judge import check_loads
 from validation.cli.printing.output import echo, echo_json, print_blocks
 from validation.cli.run import default_jobs
 
@@ -59,6 +58,7 @@ def verify(
     from validation.report.blocks import table
     from validation.report.verification import truth_counts, verdict_blocks
     from validation.runs.results import Results
+    from validation.solvers.registry import get_solver
     from validation.suite.matrix import JUDGED, phenomena, phenomenon
     from validation.suite.matrix import verify as judged
 
@@ -67,7 +67,7 @@ def verify(
         print_blocks([table(("phenomenon", "study", "gates by truth"), rows)])
         return
     shown = phenomenon(name)
-    check_loads(solver)
+    get_solver(solver).check_loads()
     # What another answers is kept nowhere: its rows have the name of `dda`.
     place = nullcontext(results) if solver == JUDGED else tempfile.TemporaryDirectory()
     with place as directory, _progress("verify") as progress:

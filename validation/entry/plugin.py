@@ -58,17 +58,11 @@ def _check_loads(user: str) -> None:
     """Refuse a solver that cannot be loaded, once and in one line, before any gate is run."""
     from validation.errors import InputError
     from validation.solvers.registry import get_solver
-    from validation.solvers.user import UserSolver
 
-    solver = get_solver(user)
-    if not isinstance(solver, UserSolver):
-        return
     try:
-        solver.check_module()
+        get_solver(user).check_loads()
     except InputError as error:
         raise pytest.UsageError(f"--dda-solver: {error}") from None
-    if reason := solver.load_error():
-        raise pytest.UsageError(f"--dda-solver: {user} cannot be loaded: {reason}")
 
 
 @pytest.fixture(scope="session")

@@ -5,10 +5,10 @@ The layout: `submissions/PROGRAM/VERSION/SETTINGS/submission.json` and, beside i
 
 from __future__ import annotations
 
+import filecmp
 import os
-import re
 import shutil
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,18 +16,17 @@ from typing import Any
 from validation.errors import InputError
 from validation.gates.gate import Status
 from validation.problems.bands import standard
-from validation.problems.data import PACK, AnswersData
-from validation.problems.pack import ANSWERS_TEMPLATE, CHOSEN
+from validation.problems.data import PACK, AnswersData, folder_name
 from validation.problems.packs import packs, stale
 from validation.problems.problem import Problem, ProblemHooks, problem
 from validation.problems.problem import names as names_of_pack
-from validation.problems.stated import Document, checked, read_document
+from validation.problems.stated import checked, read_document
 from validation.runs.defects import Defects, Place
 from validation.runs.files import atomic_directory
-from validation.runs.history import PRESSURE, History
+from validation.runs.history import History
 from validation.runs.progress import Progress
 from validation.scenes.unknown import did_you_mean
-from validation.solvers.foreign import factor, force
+from validation.solvers.foreign import differences
 from validation.solvers.history_table import AS_NAMED, HeaderNames, read_table
 
 FILE = "submission.json"
@@ -36,7 +35,6 @@ ABSENT = f"not_reported in {FILE} is for what the program cannot report"
 UNANSWERED = "must hold the table of a problem"
 DEEPEST = 4  # folders between the one that is named and a folder of answers
 TABLE = ".csv"
-FILLED_IN = {name: blank for name, blank in ANSWERS_TEMPLATE.items() if name not in CHOSEN}
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,10 +73,10 @@ class AnswerSet:
         """Names of the three folders of the layout."""
         return folder_name(self.data.program), folder_name(self.data.version), self.data.settings_name
 
-
-def folder_name(text: str) -> str:
-    """Return a text as the name of a folder: small letters, digits, points, plus and minus signs; of others nothing."""
-    return re.sub(r"[^a-z0-9.+]+", "-", text.lower()).strip("-.")
+    @property
+    def stem(self) -> str:
+        """What the names of its files have in common; names of folders hold no underscore."""
+        return "_".join(filter(None, self.address))
 
 
 # ---- reading ----
@@ -93,7 +91,7 @@ def read_sets(
     """Read all folders of answers at or at most `DEEPEST` levels below a directory.
 
     `in_layout` says whether each has to lie in its own place, `PROGRAM/VERSION/SETTINGS`. `progress` is told before
-    each table how many are read. `own` are the problems that are answered, by the names of their tables; those of the
+    each folder how many are read. `own` are the problems that are answered, by the names of their tables; those of the
     pack by default.
 
     Raises
@@ -105,26 +103,25 @@ def read_sets(
     folders = list(_folders(root))
     if not folders:
         raise InputError(f"must be a directory with {FILE} and CSV files, or of such", source=root, advice=EXPORT)
-    total = sum(len(_tables(folder)) for folder in folders)
-    number = 0
     sets: list[AnswerSet] = []
-    for folder in folders:
-
-        def step(name: str, first: int = number) -> None:
-            progress(first, total, f"reading {name}")
-
+    places: dict[tuple[str, str, str], Path] = {}
+    for number, folder in enumerate(folders):
+        progress(number, len(folders), f"reading {folder.name}")
         try:
-            answer_set = _read_set(folder, own, defects, step)
+            answer_set = _read_set(folder, own, defects)
         except InputError as error:
             defects.take(error)
-            answer_set = None
-        number += len(_tables(folder))
-        if answer_set is not None:
-            sets.append(answer_set)
-            if in_layout and folder.relative_to(root).parts != answer_set.address:
-                rule = f"must lie in {'/'.join(answer_set.address)}, by its program, version and settings_name"
-                defects.add(Place(folder), rule)
-    _check_once(sets, defects)
+            continue
+        if answer_set is None:
+            continue
+        sets.append(answer_set)
+        if in_layout and folder.relative_to(root).parts != answer_set.address:
+            rule = f"must lie in {'/'.join(answer_set.address)}, by its program, version and settings_name"
+            defects.add(Place(folder), rule)
+        first = places.setdefault(answer_set.address, folder)
+        if first != folder:
+            rule = "must have another settings_name, or another version"
+            defects.add(Place(folder / FILE), rule, value=f"those of {first}")
     if not sets and not len(defects):
         defects.add(Place(root), UNANSWERED, value="none that is asked")
     defects.check()
@@ -136,134 +133,95 @@ def _folders(root: Path) -> Iterator[Path]:
     for directory, names, files in os.walk(root):
         depth = len(Path(directory).relative_to(root).parts)
         names[:] = sorted(name for name in names if not name.startswith(".")) if depth < DEEPEST else []
-        if FILE in files or any(_is_table(name) for name in files):
+        if FILE in files or _tables(Path(directory)):
             yield Path(directory)
 
 
-def _is_table(name: str) -> bool:
-    return name.lower().endswith(TABLE) and not name.startswith(".")
-
-
 def _tables(folder: Path) -> list[Path]:
-    return sorted(path for path in folder.iterdir() if _is_table(path.name))
+    return sorted(path for path in folder.iterdir() if path.suffix.lower() == TABLE and not path.name.startswith("."))
 
 
-def _read_set(
-    folder: Path, own: Mapping[str, Problem] | None, defects: Defects, step: Callable[[str], None]
-) -> AnswerSet | None:
+def _read_set(folder: Path, own: Mapping[str, Problem] | None, defects: Defects) -> AnswerSet | None:
     """Return what a folder answers; None where that is nothing asked, or, with the defects, something is wrong."""
-    document = read_document(folder / FILE, EXPORT)
     before = len(defects)
-    pack = document.content.get("pack")
+    content = read_document(folder / FILE, EXPORT, defects)
+    pack = content.get("pack")
     if pack is not None and pack not in packs():
         rule = f"must be one of {', '.join(packs())}, this pack and earlier ones"
-        defects.add(document.place, rule, field="pack", value=repr(pack), advice=EXPORT)
+        defects.add(Place(folder / FILE), rule, field="pack", value=repr(pack), advice=EXPORT)
         pack = None
-    data = checked(document, AnswersData, FILLED_IN, defects)
-    for field in ("program", "version"):
-        text = document.content.get(field)
-        if isinstance(text, str) and text.strip() and not folder_name(text):
-            rule = "must hold a letter or digit of ASCII, for the name of its folder"
-            defects.add(document.place, rule, field=field, value=repr(text))
+    data = checked(folder / FILE, content, defects)
     # tables of an unknown pack are checked by this one, so that all defects are told at once
-    answers = _answers(folder, document, pack or PACK, own, defects, step)
+    answers = _answers(folder, content, pack or PACK, own, defects)
     if len(defects) == before and not answers and own is None:
         defects.add(Place(folder), UNANSWERED, value="none that is filled in")
     return AnswerSet(folder, data, answers) if data is not None and answers and len(defects) == before else None
 
 
 def _answers(
-    folder: Path,
-    document: Document,
-    pack: str,
-    own: Mapping[str, Problem] | None,
-    defects: Defects,
-    step: Callable[[str], None],
+    folder: Path, content: Mapping[str, Any], pack: str, own: Mapping[str, Problem] | None, defects: Defects
 ) -> tuple[Answer, ...]:
     """Return the answers of a folder's tables; a table that is not filled in is none."""
-    digests: Mapping[str, Any] = packs()[pack] if own is None else own
-    this_pack: Mapping[str, Any] = packs()[PACK] if own is None else own
-    later: list[str] = []  # tables of problems that the stated pack did not have yet
-    withheld_by_name = document.content.get("not_reported")
+    place = Place(folder / FILE)
+    asked_then = packs()[pack]
+    known: dict[str, Any] = {**asked_then, **packs()[PACK], **(own or {})}
+    withheld_by_name = content.get("not_reported")
     if not isinstance(withheld_by_name, dict):
         withheld_by_name = {}
     answers: dict[str, Answer] = {}
-    tables = _tables(folder)
-    for path in tables:
-        name = path.name.removesuffix(TABLE)
-        if own is not None and name not in own and name in packs()[PACK]:
-            continue  # it answers a problem that is not asked
-        is_later = name not in digests and name in this_pack
-        if name not in digests and not is_later:
-            advice = did_you_mean(name.lower(), digests, TABLE) or f"problems are {', '.join(digests)}"
-            whose = f"of pack {pack}" if own is None else "that is asked"
-            defects.add(Place(path), f"must be named after a problem {whose}", value=path.name, advice=advice)
+    tables = {path.name.removesuffix(TABLE): path for path in _tables(folder)}
+    for name, path in tables.items():
+        if name not in known:
+            advice = did_you_mean(name.lower(), known, TABLE) or f"problems are {', '.join(known)}"
+            rule = f"must be named after a problem of pack {pack}, or one that is asked"
+            defects.add(Place(path), rule, value=path.name, advice=advice)
             continue
-        reason = None if is_later or own is not None else stale(pack, name)
+        if own is not None and name not in own:
+            continue
+        reason = stale(pack, name) if name in asked_then else None
         if reason is not None:
             answers[name] = Answer(name, None, None, Status.STALE, reason)
             continue
-        step(name)
         posed = problem(name) if own is None else own[name]
-        columns = _reported(document, f"not_reported.{name}", withheld_by_name.get(name, []), posed, defects)
-        known_defects = len(defects)
+        columns = _reported(place, f"not_reported.{name}", withheld_by_name.get(name, []), posed, defects)
         history = read_answer(path, posed, defects, columns) if columns else None
-        if is_later and (history is not None or len(defects) > known_defects):
-            later.append(path.name)
-        if history is not None:
-            answers[name] = Answer(name, posed, history)
-    if later:
-        more = f" and {len(later) - 1} more" if len(later) > 1 else ""
-        rule = f"must be {PACK}, from which on the pack holds {later[0]}{more}"
-        defects.add(document.place, rule, field="pack", value=repr(pack))
-    names = [path.name for path in tables]
+        if history is None:
+            continue
+        answers[name] = Answer(name, posed, history)
+        if name in packs()[PACK] and name not in asked_then and not defects.has(place.path, "pack"):
+            rule = f"must be {PACK}, since the stated pack does not hold {path.name} yet"
+            defects.add(place, rule, field="pack", value=repr(pack))
     for field in ("not_reported", "step_s"):
-        # Of a folder that answers more than is asked all is stated.
-        _check_problems(document, field, {**packs()[pack], **packs()[PACK], **(own or {})}, names, defects)
-    order = [*names_of_pack(), *sorted(set(answers) - set(names_of_pack()))]
-    return tuple(answers[name] for name in order if name in answers)
+        _check_problems(place, field, content.get(field), known, tables, defects)
+    return tuple(answers[name] for name in dict.fromkeys([*names_of_pack(), *answers]) if name in answers)
 
 
-def _reported(document: Document, field: str, withheld: object, posed: Problem, defects: Defects) -> list[str]:
+def _reported(place: Place, field: str, withheld: object, posed: Problem, defects: Defects) -> list[str]:
     """Return the columns of the history that a table has to hold; none, and the defects, where that is not clear."""
     if not isinstance(withheld, Sequence) or isinstance(withheld, str):  # a defect of its type, which is known
         return []
     names = [posed.named(column) for column in posed.columns]
     before = len(defects)
-    for i, name in enumerate(withheld):
+    for name in withheld:
         if name not in names:
-            defects.add(document.place, f"must be among {', '.join(names)}", field=field, value=repr(name))
-        elif name in withheld[:i]:
-            defects.add(document.place, "must not repeat a column", field=field, value=repr(name))
+            defects.add(place, f"must be among {', '.join(names)}", field=field, value=repr(name))
     remaining = [column for column in posed.columns if posed.named(column) not in withheld]
     if not remaining:
         rule = "must leave a column to judge"
-        defects.add(document.place, rule, field=field, value=f"all of {', '.join(names)}")
+        defects.add(place, rule, field=field, value=f"all of {', '.join(names)}")
     return remaining if len(defects) == before else []
 
 
 def _check_problems(
-    document: Document, field: str, known: Mapping[str, Any], tables: Sequence[str], defects: Defects
+    place: Place, field: str, stated: object, known: Collection[str], tables: Collection[str], defects: Defects
 ) -> None:
     """Add a defect for each problem that a field names and no table answers."""
-    stated = document.content.get(field)
     for name in stated if isinstance(stated, dict) else ():
         if name not in known:
             rule = f"{name}: must be among {', '.join(known)}"
-            defects.add(document.place, rule, field=field, advice=did_you_mean(name, known))
-        elif name + TABLE not in tables:
-            defects.add(document.place, f"{name}: must have a table {name}{TABLE}", field=field, value="no such file")
-
-
-def _check_once(sets: Sequence[AnswerSet], defects: Defects) -> None:
-    """Add a defect for each folder that stands for the same program, version and settings as another."""
-    known: dict[tuple[str, str, str], Path] = {}
-    for answer_set in sets:
-        if answer_set.address in known:
-            rule = "must have another settings_name, or another version"
-            other = f"those of {known[answer_set.address]}"
-            defects.add(Place(answer_set.place / FILE), rule, value=other)
-        known.setdefault(answer_set.address, answer_set.place)
+            defects.add(place, rule, field=field, advice=did_you_mean(name, known))
+        elif name not in tables:
+            defects.add(place, f"{name}: must have a table {name}{TABLE}", field=field, value="no such file")
 
 
 def read_tables(place: Path, problems: Sequence[Problem], header: HeaderNames = AS_NAMED) -> AnswerSet:
@@ -278,7 +236,7 @@ def read_tables(place: Path, problems: Sequence[Problem], header: HeaderNames = 
     answers = []
     for posed in problems:
         path = place / f"{posed.name}{TABLE}" if place.is_dir() else place
-        if path.exists() or not place.is_dir():
+        if path.exists():
             history = read_answer(path, posed, defects, header=header)
             if history is not None:
                 answers.append(Answer(posed.name, posed, history))
@@ -329,16 +287,8 @@ def _differences(history: History, posed: Problem) -> Iterator[tuple[str, str]]:
     if other_units is not None:
         yield from other_units
         return
-    exact = standard(posed).exact
-    for column, values in history.columns.items():
-        if column not in exact.columns:
-            continue
-        rows = len(exact.time)
-        difference = factor(column, values[:rows], exact.columns[column])
-        if difference is None and column == PRESSURE:
-            difference = force(posed.scene, history, exact)
-        if difference is not None:
-            yield column, difference.replace(column, "it", 1)
+    for column, difference in differences(posed.scene, history.columns, standard(posed).exact.columns):
+        yield column, difference.replace(column, "it", 1)
 
 
 # ---- keeping ----
@@ -382,6 +332,6 @@ def _same_files(answer_set: AnswerSet, place: Path) -> bool:
     """Whether a place holds the files of a folder of answers and no other answer."""
     if not place.is_dir():
         return False
-    files = {path.name: path.read_bytes() for path in _kept_files(answer_set)}
-    present_files = {path.name: path.read_bytes() for path in [place / FILE, *_tables(place)] if path.is_file()}
-    return files == present_files
+    names = [path.name for path in [*_kept_files(answer_set), *_tables(place)]]
+    same, _, _ = filecmp.cmpfiles(answer_set.place, place, names, shallow=False)
+    return same == names

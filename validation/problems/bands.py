@@ -18,13 +18,13 @@ from validation.diagnosis.hooks import DiagnosisHooks
 from validation.diagnosis.numbers import Values
 from validation.metrics.values import largest
 from validation.models.column.tables import ColumnSection
+from validation.problems.numbered import UNKNOWN
 from validation.problems.problem import Problem, ProblemHooks
 from validation.problems.truth import exact, truth_of
 from validation.runs.history import Array, History
 from validation.runs.numbers import share_text
-from validation.scenes.scene import Scene, parse_scene
+from validation.scenes.scene import Scene
 
-UNKNOWN = 0.01  # relative error of a datum that nobody knows better
 # What one per cent of a datum moves further than this is not determined by the data any more: an answer of zeros, whose
 # error is 1, must not come near to it. The column is judged up to the instant at which that happens.
 LARGEST = 0.2
@@ -122,26 +122,12 @@ def changed_scenes(scene: Scene) -> dict[str, Scene]:
 
 def standard(problem: Problem) -> Standard:
     """Return what answers to a problem are held against, computed once a scene; InputError without an exact motion."""
-    return _standard(definition_of(problem.scene))
-
-
-def definition_of(scene: Scene) -> str:
-    """Return a scene as JSON, by which what is computed of it is kept."""
-    return scene.model_dump_json(by_alias=True, exclude_unset=True)
+    return _standard(problem.scene)
 
 
 @functools.lru_cache(maxsize=32)
-def _standard(definition: str) -> Standard:
-    scene = scene_of(definition)
-    motion = _motion(scene)
-    return standard_of(motion, {name: _motion(other) for name, other in changed_scenes(scene).items()})
-
-
-def scene_of(definition: str) -> Scene:
-    """Return the scene of such a definition."""
-    import json
-
-    return parse_scene(json.loads(definition), "scene")
+def _standard(scene: Scene) -> Standard:
+    return standard_of(_motion(scene), {name: _motion(other) for name, other in changed_scenes(scene).items()})
 
 
 def _motion(scene: Scene) -> History:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Annotated, Any, Final, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
@@ -12,6 +13,20 @@ PACK: Final = "5.1"
 """Version of the pack, see `validation.problems.packs` for what changes it."""
 ANSWERS: Final = "dda-validation answers 1"  # the number is the version of the layout of a folder of answers
 Text = Annotated[str, Field(min_length=1, max_length=2000, pattern=r"\S"), AfterValidator(printable)]
+
+
+def folder_name(text: str) -> str:
+    """Return a text as the name of a folder: small letters, digits, points, plus and minus signs; of others nothing."""
+    return re.sub(r"[^a-z0-9.+]+", "-", text.lower()).strip("-.")
+
+
+def _names_a_folder(text: str) -> str:
+    if not folder_name(text):
+        raise ValueError("must hold a letter or digit of ASCII, for the name of its folder")
+    return text
+
+
+Name = Annotated[Text, AfterValidator(_names_a_folder)]
 PackVersion = Annotated[str, Field(pattern=r"^[0-9]+\.[0-9]+$", description="Version of the pack that is answered.")]
 Step = Annotated[float, Field(gt=0, allow_inf_nan=False, strict=True)]
 
@@ -76,8 +91,8 @@ class AnswersData(Data):
 
     format: Literal["dda-validation answers 1"]
     pack: PackVersion
-    program: Text
-    version: Text = Field(description="Of the program.")
+    program: Name
+    version: Name = Field(description="Of the program.")
     settings_name: Annotated[str, Field(max_length=60, pattern=r"^[a-z0-9][a-z0-9.+-]*$")] = Field(
         description="Name of the folder of these settings, such as default or fine-step."
     )

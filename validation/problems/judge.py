@@ -7,16 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from validation.errors import InputError
 from validation.gates.gate import Status
 from validation.metrics.pairs import relative_l2
+from validation.metrics.values import as_number
 from validation.problems.bands import Band, Standard, standard
-from validation.problems.numbered import ROUNDING, measured
+from validation.problems.numbered import ROUNDING
 from validation.problems.problem import Problem
 from validation.problems.quantities import Quantity, quantities
 from validation.runs.history import Array, History
-
-SAME_INSTANT = 1e-3  # of a step: times are often printed with few digits
 
 
 @dataclass(frozen=True)
@@ -99,19 +97,8 @@ def judge(problem: Problem, history: History, against: Standard | None = None) -
     Raises
     ------
     InputError
-        The answer is not at the steps of the scene, or no exact motion could be computed.
+        No exact motion could be computed.
     """
-    instants = problem.instants
-    rows = len(instants)
-    if len(history.time) < rows:
-        raise InputError(f"must hold {rows} rows", source=problem.name, field="time", value=len(history.time))
-    same = np.abs(history.time[:rows] - instants) <= SAME_INSTANT * problem.scene.time.step
-    if not np.all(same):
-        row = int(np.argmin(same))
-        expected, stated = instants[row], history.time[row]
-        raise InputError(
-            f"must be {expected:.9g} s in row {row + 1}", source=problem.name, field="time", value=f"{stated:.9g}"
-        )
     if problem.numbers:
         return _judged_numbers(problem, history)
     reference = against or standard(problem)
@@ -122,18 +109,30 @@ def judge(problem: Problem, history: History, against: Standard | None = None) -
 def _judged_numbers(problem: Problem, history: History) -> Judgement:
     """Judge numbers that are measured on an answer: the error of each is a share of its scale."""
     until = problem.scene.time.duration
+    answer = history.until(until)
     criteria = []
     numbers = []
-    for one in measured(problem.numbers, history.until(until)):
-        quantity = one.quantity
-        if quantity.optional and one.value is None:
-            continue
-        numbers.append(Quantity(quantity.name, quantity.unit, one.value, quantity.exact, (quantity.low, quantity.high)))
-        error, allowed = one.shares
-        if error is None and one.status is Status.FAIL:
-            error = math.inf
-        within = until if one.status is Status.PASS else 0.0
-        criteria.append(Criterion(quantity.name, one.status, error, allowed, until, quantity.reason, within))
+    for number in problem.numbers:
+        is_reported = True
+        try:
+            value = number.measure(answer)
+        except KeyError:  # of a column that the answer withholds
+            value = None
+            is_reported = False
+        if value is None or not math.isfinite(value):
+            if number.optional:
+                continue
+            value = None
+        numbers.append(Quantity(number.name, number.unit, value, number.exact, (number.low, number.high)))
+        error = math.inf if value is None else abs(value - number.exact) / number.scale
+        status = Status.PASS if value is not None and number.passes(value) else Status.FAIL
+        if not is_reported:
+            status = Status.NOT_REPORTED
+        within = until if status is Status.PASS else 0.0
+        allowed = number.allowed(math.inf if value is None else value)
+        criteria.append(
+            Criterion(number.name, status, error if is_reported else None, allowed, until, number.reason, within)
+        )
     return Judgement(problem.name, tuple(criteria), tuple(numbers))
 
 
@@ -143,7 +142,8 @@ def _judged(name: str, values: Array | None, reference: Standard) -> Criterion:
         return Criterion(name, Status.NOT_JUDGED, None, None, 0.0, _without_band(name, reference))
     if values is None:
         return Criterion(name, Status.NOT_REPORTED, None, band.high, band.until, band.reason, datum=band.datum)
-    error = error_of(values, reference.exact.columns[name], band)
+    with np.errstate(all="ignore"):
+        error = as_number(relative_l2(values[: band.rows], reference.exact.columns[name][: band.rows]))
     inside = error <= band.high * (1 + ROUNDING)
     status = Status.PASS if inside else Status.FAIL
     within = band.until if inside else _within_until(values, reference.exact, name, band)
@@ -166,13 +166,3 @@ def _without_band(name: str, reference: Standard) -> str:
     if not np.any(exact):
         return "it does not move in the exact motion, which leaves nothing to divide an error by"
     return "one per cent of the scene's data changes it more than anything could be judged by"
-
-
-def error_of(values: Array, exact: Array, band: Band) -> float:
-    """Return the relative L2 error over the judged rows; infinite where a value is not finite."""
-    judged, expected = values[: band.rows], exact[: band.rows]
-    if not np.isfinite(judged).all():
-        return math.inf
-    with np.errstate(over="ignore"):
-        error = relative_l2(judged, expected)
-    return error if isinstance(error, float) else math.inf

@@ -17,7 +17,7 @@ from validation.diagnosis.hooks import DiagnosisHooks
 from validation.diagnosis.numbers import AVERAGE
 from validation.diagnosis.one_change import of_schemes, run_of
 from validation.diagnosis.sentences import scheme_words
-from validation.problems.bands import Standard, definition_of, scene_of
+from validation.problems.bands import Standard
 from validation.problems.truth import truth_of
 from validation.runs.history import Array, History
 from validation.scenes import features
@@ -57,13 +57,9 @@ class Base:
 
 
 @functools.lru_cache(maxsize=2)
-def _runs(definition: str, reference: Standard) -> Runs:
-    return Runs(scene_of(definition), reference)
-
-
 def runs_of(scene: Scene, reference: Standard) -> Runs:
     """Return the runs of a scene, shared by all answers that are judged by one standard."""
-    return _runs(definition_of(scene), reference)
+    return Runs(scene, reference)
 
 
 @dataclass(eq=False)

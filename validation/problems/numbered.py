@@ -5,12 +5,10 @@ The bands are what one per cent of a datum changes, for the reason of `validatio
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from validation.gates.gate import Status
 from validation.runs.history import History
 
 UNKNOWN = 0.01  # relative error of a datum that nobody knows better
@@ -36,47 +34,10 @@ class JudgedNumber:
         margin = ROUNDING * max(abs(self.low), abs(self.high))
         return self.low - margin <= value <= self.high + margin
 
-
-@dataclass(frozen=True)
-class MeasuredNumber:
-    """A number of an answer beside its exact value; None where it could not be measured."""
-
-    quantity: JudgedNumber
-    value: float | None
-    is_reported: bool = True  # whether the columns are there that it is measured on
-
-    @property
-    def status(self) -> Status:
-        """Whether it is in its band, or not reported; a number that the positions hold and do not give fails."""
-        if not self.is_reported or (self.quantity.optional and self.value is None):
-            return Status.NOT_REPORTED
-        if self.value is None:
-            return Status.FAIL
-        return Status.PASS if self.quantity.passes(self.value) else Status.FAIL
-
-    @property
-    def shares(self) -> tuple[float | None, float]:
-        """Error, None where it cannot be measured, and what is allowed on its side, as shares of the number's scale."""
-        quantity = self.quantity
-        above = self.value is None or self.value > quantity.exact or quantity.low == quantity.exact
-        room = quantity.high - quantity.exact if above else quantity.exact - quantity.low
-        error = None if self.value is None else abs(self.value - quantity.exact) / quantity.scale
-        return error, room / quantity.scale
-
-
-def measured(quantities: Sequence[JudgedNumber], history: History) -> tuple[MeasuredNumber, ...]:
-    """Return the numbers of an answer."""
-    values = []
-    for quantity in quantities:
-        try:
-            value = quantity.measure(history)
-        except KeyError:  # of a column that the answer withholds
-            values.append(MeasuredNumber(quantity, None, is_reported=False))
-            continue
-        if value is not None and not math.isfinite(value):
-            value = None
-        values.append(MeasuredNumber(quantity, value))
-    return tuple(values)
+    def allowed(self, value: float) -> float:
+        """Return the error that is allowed on the side of a value, as a share of the scale."""
+        above = value > self.exact or self.low == self.exact
+        return (self.high - self.exact if above else self.exact - self.low) / self.scale
 
 
 def around(name: str, unit: str, exact: float, changed: Sequence[float], reason: str, **others: Any) -> JudgedNumber:

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from validation.errors import InputError
 from validation.problems.bands import standard
 from validation.problems.data import (
     ANSWERS,
@@ -23,7 +22,7 @@ from validation.problems.data import (
 from validation.problems.packs import digest
 from validation.problems.problem import Problem, names, problem
 from validation.runs.columns import kind_of, split
-from validation.runs.files import csv_text, write_text
+from validation.runs.files import csv_text, write_new
 from validation.runs.history import Array, History
 from validation.runs.progress import Progress
 from validation.scenes.plain import scene_data, words
@@ -32,6 +31,7 @@ PAGE = Path(__file__).with_suffix(".md")  # of the pack, to be filled in
 MEASURE = "norm(answer - exact) / norm(exact), over the instants up to until_s"
 TIME = "time_s"
 NUMBERS = ("problem", "name", "unit", "exact", "low", "high")  # of the table of numbers that are judged
+MARK = "problem.schema.json"  # a file that every pack has
 DIALECT = "https://json-schema.org/draft/2020-12/schema"  # of pydantic's schemas
 MOST_NAMED = 7  # columns of a problem that the page names
 ANSWERS_TEMPLATE: Mapping[str, Any] = {
@@ -53,11 +53,7 @@ CHOSEN = ("settings_name",)  # of these, what may stay as the template has it
 
 def problem_data(posed: Problem) -> ProblemData:
     """Return a problem as plain data."""
-    numbers = []
-    for number in posed.numbers:
-        if not number.optional:
-            band = {"exact": number.exact, "low": number.low, "high": number.high}
-            numbers.append(NumberData(name=number.name, unit=number.unit, reason=number.reason, **band))
+    numbers = [number for number in posed.numbers if not number.optional]
     return ProblemData(
         problem=posed.name,
         digest=digest(posed),
@@ -66,7 +62,7 @@ def problem_data(posed: Problem) -> ProblemData:
         scene=scene_data(posed.scene),
         sampling=SamplingData(step_s=posed.scene.time.step, count=len(posed.instants)),
         answer=tuple(_column_data(posed, column) for column in posed.columns),
-        numbers=tuple(numbers),
+        numbers=tuple(NumberData.model_validate(number, from_attributes=True) for number in numbers),
         exact=None if posed.numbers else f"exact/{posed.name}.csv",
     )
 
@@ -82,49 +78,32 @@ def _column_data(posed: Problem, column: str) -> ColumnOfAnswer:
     return ColumnOfAnswer(name=posed.named(column), meaning=meaning, measure=MEASURE, **limits)
 
 
-def check_place(directory: Path) -> None:
-    """Raise InputError for a place that holds other files than a pack, which is replaced as a whole."""
-    if directory.exists() and not directory.is_dir():
-        raise InputError("must be a directory", source=directory, value="a file")
-    readme = directory / "README.md"
-    if not directory.is_dir() or not any(directory.iterdir()):
-        return
-    title = PAGE.read_text(encoding="utf-8").splitlines()[0].encode()
-    if not readme.is_file() or not readme.read_bytes().startswith(title):
-        raise InputError(
-            "must be a new or empty directory or an earlier pack", source=directory, value="one with other files"
-        )
-
-
-def write_pack(place: Path, progress: Progress = lambda number, total, label: None) -> int:
-    """Write the problems into the directory of a pack, which is made, and return how many there are.
-
-    Raises InputError where the directory cannot be made or written.
-    """
+def write_pack(place: Path, progress: Progress) -> int:
+    """Write the problems into the new directory of a pack, and return how many there are."""
     rows = []
     numbers: list[Sequence[str]] = [NUMBERS]
     for number, name in enumerate(names()):
         progress(number, len(names()), name)
         posed = problem(name)
         data = problem_data(posed)
-        _write(place / f"{name}.json", _json(data.model_dump(mode="json")))
+        write_new(place / f"{name}.json", _json(data.model_dump(mode="json")))
         if data.exact is not None:
-            _write(place / data.exact, table_of(posed, standard(posed).exact))
+            write_new(place / data.exact, table_of(posed, standard(posed).exact))
         for judged in data.numbers:
             numbers.append((name, *(str(getattr(judged, column)) for column in NUMBERS[1:])))
-        _write(place / "answers" / f"{name}.csv", blank_table(posed))
+        write_new(place / "answers" / f"{name}.csv", blank_table(posed))
         columns = ", ".join(f"`{column.name}`" for column in data.answer[:MOST_NAMED])
         more = " and more" if len(data.answer) > MOST_NAMED else ""
         rows.append(f"| `{name}` | {posed.asks} | {columns}{more} |")
-    _write(place / "exact" / "numbers.csv", csv_text(numbers))
-    _write(place / "answers" / "submission.json", _json({"format": ANSWERS, "pack": PACK, **ANSWERS_TEMPLATE}))
+    write_new(place / "exact" / "numbers.csv", csv_text(numbers))
+    write_new(place / "answers" / "submission.json", _json({"format": ANSWERS, "pack": PACK, **ANSWERS_TEMPLATE}))
     for data_of in (ProblemData, AnswersData):
         stem = data_of.__name__.removesuffix("Data").lower()
-        _write(place / f"{stem}.schema.json", _json({"$schema": DIALECT} | data_of.model_json_schema()))
+        write_new(place / f"{stem}.schema.json", _json({"$schema": DIALECT} | data_of.model_json_schema()))
     table = "\n".join(["| problem | what it asks | columns |", "|---|---|---|", *rows])
     meanings = "\n".join(["| name | meaning |", "|---|---|", *(f"| `{name}` | {text} |" for name, text in words())])
     readme = PAGE.read_text(encoding="utf-8")
-    _write(place / "README.md", readme.format(pack=PACK, table=table, words=meanings))
+    write_new(place / "README.md", readme.format(pack=PACK, table=table, words=meanings))
     return len(names())
 
 
@@ -144,13 +123,3 @@ def blank_table(posed: Problem) -> str:
 
 def _json(data: Any) -> str:
     return json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
-
-
-def _write(path: Path, text: str) -> None:
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(
-            f"cannot be made: {error.strerror}", source=path.parent, advice="choose another place"
-        ) from None
-    write_text(path, text)

@@ -34,17 +34,18 @@ def digest(problem: Problem) -> str:
         "sampling": {"step_s": scene.time.step, "count": scene.time.steps},
         "columns": list(problem.columns),
     }
-    text = json.dumps(_canonical(stated), sort_keys=True)
+    canonical = json.loads(json.dumps(stated), parse_float=_rounded, object_hook=_stated)
+    text = json.dumps(canonical, sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:DIGEST_LENGTH]
 
 
-def _canonical(value: Any) -> Any:
-    """Return plain data without what is null, so that a new field that a problem does not use changes no digest."""
-    if isinstance(value, dict):
-        return {name: _canonical(part) for name, part in value.items() if part is not None}
-    if isinstance(value, list):
-        return [_canonical(part) for part in value]
-    return format(value, f".{DIGITS}g") if isinstance(value, float) else value
+def _rounded(number: str) -> str:
+    return format(float(number), f".{DIGITS}g")
+
+
+def _stated(table: dict[str, Any]) -> dict[str, Any]:
+    """Return a table without what is null, so that a new field that a problem does not use changes no digest."""
+    return {name: part for name, part in table.items() if part is not None}
 
 
 @functools.cache

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -119,8 +119,7 @@ ASKS = {
 
 
 def _of_scene(name: str) -> Problem:
-    scene = load_scene(PREFIX + name)
-    return Problem(name, ASKS[name], scene.title or name, scene, truth_of(scene))
+    return replace(problem_of(load_scene(PREFIX + name)), name=name, asks=ASKS[name])
 
 
 @functools.cache

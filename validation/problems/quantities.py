@@ -84,11 +84,10 @@ def openings(time: Array, x: Array) -> float:
 
 def rebound(time: Array, x: Array) -> float | None:
     """Return the rise from the lowest point of the first landing to the height of the bounce after it [m]."""
-    lowest = next((i for i in range(1, len(x) - 1) if x[i - 1] > x[i] <= x[i + 1]), None)
-    if lowest is None:
-        return None
-    highest = next((i for i in range(lowest + 1, len(x) - 1) if x[i - 1] < x[i] >= x[i + 1]), None)
-    return None if highest is None else float(x[highest] - x[lowest])
+    rises = np.diff(x) >= 0
+    turns = np.flatnonzero(rises[1:] != rises[:-1]) + 1
+    turns = turns[np.sum(rises[:1]) :]  # from the first lowest point on
+    return float(x[turns[1]] - x[turns[0]]) if len(turns) > 1 else None
 
 
 def arrival(time: Array, x: Array) -> float | None:
@@ -113,18 +112,16 @@ def _landing(scene: Scene) -> Callable[[Array, Array], float | None]:
 
 
 def _reached(time: Array, x: Array, level: float) -> float | None:
+    """Return when values that are zero at t = 0 first reach a level [s], between steps by a straight line."""
     rows = np.flatnonzero(x >= level)
     if level <= 0 or not len(rows):
         return None
-    i = int(rows[0])
-    before, then = (x[i - 1], time[i - 1]) if i else (0.0, 0.0)
-    return float(then + (level - before) / (x[i] - before) * (time[i] - then)) if x[i] > before else float(time[i])
+    around = slice(rows[0], rows[0] + 2)  # of the rows with that of t = 0: the one before and the first that reaches it
+    return float(np.interp(level, np.append(0.0, x)[around], np.append(0.0, time)[around]))
 
 
 def _pole(time: Array, x: Array) -> tuple[float | None, float | None]:
     """Return frequency [Hz] and damping ratio [1] of the strongest oscillation, None where there is none."""
     middle = float(np.mean(x))
-    if middle == 0 or len(time) < 2:
-        return None, None
-    strongest = poles(x / middle - 1, float(time[1] - time[0]))
+    strongest = poles(x / middle - 1, float(time[0])) if middle else []
     return (strongest[0].frequency / (2 * math.pi), strongest[0].damping) if strongest else (None, None)

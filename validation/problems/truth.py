@@ -101,11 +101,9 @@ def _refuse_other_rocking(scene: Scene) -> None:
     apart = [f.name for f in features.FEATURES if f.name in features.of(scene) and f.name not in OF_ROCKING]
     if apart:
         raise refused(f"no exact motion is known of a block that turns with {', '.join(apart)}")
-    if tilt == 0 or scene.load.gravity <= 0 or scene.load.pressure:
-        raise refused("a block that turns is known exactly where it is let go from a tilt, by weight")
-    if c.gap or b.velocity or c.cohesion:
-        turns = "the block does not turn about its corner alone"
-        raise refused(f"no exact motion is known: {turns}: it has a gap, a velocity or cohesion")
+    if tilt == 0 or scene.load.gravity <= 0 or scene.load.pressure or c.gap or b.velocity or c.cohesion:
+        without = "without a gap, a velocity or cohesion"
+        raise refused(f"a block that turns is known exactly where it is let go from a tilt, by weight alone, {without}")
     width, height = _sizes(scene)
     needed = math.degrees(math.atan(friction_needed(width, height, tilt)))
     if c.shear == 0 or (c.friction is not None and c.friction <= needed):
@@ -126,11 +124,9 @@ OF_ROCKING = (features.WEIGHT, features.UNILATERAL, features.FRICTION, features.
 
 
 def _sizes(scene: Scene) -> tuple[float, float]:
-    points = np.asarray(scene.block.outline)
-    width, height = np.ptp(points, axis=0)
-    if len(points) != 4 or not math.isclose(scene.block.mass, scene.block.density * width * height):
+    if scene.block.rectangle is None:
         raise InputError("no exact motion is known of a block that turns and is no rectangle", source=scene.name)
-    return float(width), float(height)
+    return scene.block.rectangle
 
 
 def _rotation(scene: Scene, truth: Truth) -> History:

@@ -102,6 +102,16 @@ def atomic_directory(out: Path) -> Iterator[Path]:
             shutil.rmtree(temporary, ignore_errors=True)
 
 
+def check_place(out: Path, mark: str, what: str) -> None:
+    """Refuse a place that will be replaced as a whole and is neither empty nor an earlier `what`.
+
+    That has a file of the name `mark`.
+    """
+    is_empty = out.is_dir() and not any(out.iterdir())
+    if out.exists() and not is_empty and not (out / mark).is_file():
+        raise InputError(f"must be a new or empty directory or an earlier {what}", source=out)
+
+
 def check_output(path: Path) -> Path:
     """Return what a path that will be written leads to; refuse one that cannot be.
 
@@ -153,6 +163,12 @@ def _copy_into(target: Path, content: Path) -> None:
     os.set_blocking(handle, True)
     with os.fdopen(handle, "wb") as stream, content.open("rb") as source:
         shutil.copyfileobj(source, stream)
+
+
+def write_new(path: Path, text: str) -> None:
+    """Write a text into a directory that nobody has yet, with the same line ends everywhere."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(text.encode())
 
 
 def write_atomically(path: Path, write: Callable[[IO[bytes]], object]) -> None:

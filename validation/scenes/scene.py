@@ -71,6 +71,9 @@ class Scene(SceneTables):
         _check_files(tables)
         return self
 
+    def __hash__(self) -> int:
+        return hash(self.name)  # equal scenes have it in common
+
     def tables(self) -> dict[str, Section]:
         """Return the tables that the scene has, by the names that its file gives them."""
         values = {field.alias or name: getattr(self, name) for name, field in type(self).model_fields.items()}

@@ -52,6 +52,7 @@ class Role(enum.StrEnum):
     OTHER = "other"  # brought by a user
 
 
+REPORTABLE = frozenset({"modes", "static"})  # what a solver may report beside its history
 EXACT_IN_TIME = (Role.LIMIT, Role.TRUTH)  # no time step enters the motion
 # keys that a motion exact in time does not read
 OF_SCHEMES = ("time.alpha", "time.delta", "time.start", "time.scheme", "time.rho_inf", "time.split")
@@ -232,6 +233,20 @@ class Solver:
     def columns(self) -> tuple[str, ...] | None:
         """Return the columns that this solver has, None where it takes whatever a scene asks for."""
         return self.own_columns
+
+    def parts(self) -> frozenset[str]:
+        """Return what the solver can report beside its history, among `REPORTABLE`."""
+        return REPORTABLE
+
+    def check_module(self) -> None:
+        """Refuse by an `InputError` a solver that is nowhere; those of the suite are here."""
+
+    def check_loads(self) -> None:
+        """Refuse by an `InputError` what is nowhere, or cannot be loaded."""
+
+    def about(self) -> Mapping[str, str]:
+        """Return what a solver says of itself; those of the suite say it in the documentation."""
+        return {}
 
     def versions(self) -> Mapping[str, str]:
         """Return the versions of programs that its results depend on, beyond the suite's own libraries."""

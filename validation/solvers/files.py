@@ -9,7 +9,6 @@ from __future__ import annotations
 import os
 import signal
 import subprocess
-from collections.abc import Mapping
 from pathlib import Path
 from time import perf_counter
 
@@ -21,69 +20,26 @@ from validation.runs.defects import Defects, DefectsError
 from validation.runs.run import Outcome, Run
 from validation.scenes.plain import lines
 from validation.scenes.scene import Scene
-from validation.solvers.contract import Prepared, Solver
-from validation.solvers.dda import DDA
 from validation.solvers.foreign import one_line, run_of_columns
 from validation.solvers.history_table import read_table
 from validation.solvers.processes.worker import stderr_tail
-from validation.solvers.user import ALLOWANCE, UserSolver, base_limit
+from validation.solvers.user import ALLOWANCE, Outside, base_limit
 
 ENDING = ".csv"
 REFUSED = 77  # exit status, by which test harnesses of make leave a test out
 
 
-class Outside(Solver):
-    """A solver of which nothing is known but what it answers."""
-
-    sections = UserSolver.sections  # two scenes that differ anywhere are two cases
-    cached = False  # a file or a program may be another at the next run
-
-    def __init__(self, place: str) -> None:
-        self.name = place
-
-    def unhandled(self, scene: Scene) -> list[str]:
-        """Return nothing: who has the history knows what it is of."""
-        return []
-
-    def parts(self) -> frozenset[str]:
-        """Return nothing: a table holds no static solution and no modes."""
-        return frozenset()
-
-    def build(self, scene: Scene, full: bool) -> Prepared:
-        """Take the scene; it is read or run when it is asked."""
-        return OutsideScene(self, scene)
-
-    def read(self, scene: Scene) -> Run:
-        """Return the history of a scene."""
-        raise NotImplementedError
-
-    def checked(self, scene: Scene, text: str | None, path: Path) -> Run:
-        """Return the run of a table, checked as that of a user's solver is; a `DefectsError` names every defect."""
-        instants = scene.time.step * np.arange(1.0, scene.time.steps + 1)
-        names = (*scene.run.columns, *OF_BLOCK)
-        units = {name: unit_of(name, scene.kind.columns) for name in names}
-        defects = Defects()
-        table = read_table(path, instants, units, scene.run.columns[:1], defects, text=text)
-        defects.check()
-        if table is None:
-            return Run(Outcome.NOT_RUN, notes=(f"{path} is blank",))
-        return run_of_columns(scene, {"time": table.history.time, **table.history.columns})
-
-
-class OutsideScene(Prepared):
-    """A scene for such a solver."""
-
-    def __init__(self, solver: Outside, scene: Scene) -> None:
-        self.solver = solver
-        self.scene = scene
-
-    def history_run(self) -> Run:
-        """Return the history."""
-        return self.solver.read(self.scene)
-
-    def assumed_static(self) -> Mapping[str, float]:
-        """Return the static solution that settling is measured from: the block's."""
-        return DDA().prepare(self.scene).static()
+def checked(scene: Scene, text: str | None, path: Path) -> Run:
+    """Return the run of a table, checked as that of a user's solver is; a `DefectsError` names every defect."""
+    instants = scene.time.step * np.arange(1.0, scene.time.steps + 1)
+    names = (*scene.run.columns, *OF_BLOCK)
+    units = {name: unit_of(name, scene.kind.columns) for name in names}
+    defects = Defects()
+    table = read_table(path, instants, units, scene.run.columns[:1], defects, text=text)
+    defects.check()
+    if table is None:
+        return Run(Outcome.NOT_RUN, notes=(f"{path} is blank",))
+    return run_of_columns(scene, {"time": table.history.time, **table.history.columns})
 
 
 class HistoryFiles(Outside):
@@ -103,7 +59,7 @@ class HistoryFiles(Outside):
         """Read the history of a scene."""
         if reason := self.applicable(scene):
             return Run(Outcome.NOT_APPLICABLE, notes=(reason,))
-        return self.checked(scene, None, self.file_of(scene))
+        return checked(scene, None, self.file_of(scene))
 
 
 class Program(Outside):
@@ -138,7 +94,7 @@ class Program(Outside):
             return Run(Outcome.RAISED, notes=(f"ended with status {process.returncode}: {last_words}",))
         seconds = {"setup": 0.0, "stepping": perf_counter() - start}
         try:
-            run = self.checked(scene, printed.decode(errors="replace"), Path(self.name))
+            run = checked(scene, printed.decode(errors="replace"), Path(self.name))
         except DefectsError as error:
             return Run(Outcome.WRONG_SHAPE, notes=(one_line(str(error)),))
         return Run(run.outcome, run.history, run.work, seconds, run.notes)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -24,6 +25,7 @@ SAME_AS = "bit for bit the history of "  # how a note begins that names the suit
 PROGRAM_STEPS = "program_steps"  # of an answer: how many steps the program made where a row takes several
 LONGEST_NOTE = 400  # characters of what a user's solver says
 LEAST_CORRELATION = 0.8  # correlation from which two histories are one but for their unit
+Columns = Mapping[str, Array]
 
 
 def one_line(text: str) -> str:
@@ -41,20 +43,21 @@ def run_of_columns(scene: Scene, columns: dict[str, Array]) -> Run:
         names = one_line(", ".join(columns)) or "nothing"
         return Run(Outcome.WRONG_SHAPE, notes=(f"no column {' or '.join(required)}, got {names}",))
     expected = scene.time.step * np.arange(1, steps + 1, dtype=np.float64)
-    time = columns.pop("time", expected)
-    program_steps = columns.pop(PROGRAM_STEPS, np.array(float(steps)))
-    columns = {name: values for name, values in columns.items() if name in (*OF_BLOCK, *scene.run.columns)}
-    history = History(time, columns)
-    for name, values in {"time": history.time, **columns}.items():
+    program_steps = columns.get(PROGRAM_STEPS, np.array(float(steps)))
+    asked = {name: values for name, values in columns.items() if name in (*OF_BLOCK, *scene.run.columns)}
+    history = History(columns.get("time", expected), asked)
+    timed = {"time": history.time, **asked}
+    for name, values in timed.items():
         if values.shape != (steps,):
             hint = " (step 0, the state at rest, is not reported)" if values.shape == (steps + 1,) else ""
             return Run(Outcome.WRONG_SHAPE, history, notes=(f"{name} has shape {values.shape}, not ({steps},){hint}",))
     notes: tuple[str, ...] = ()
-    if all(np.isfinite(values).all() for values in (history.time, *columns.values())):
+    if all(np.isfinite(values).all() for values in timed.values()):
         reference = _reference(scene)
-        if wrong := _wrong_units(scene, history, expected, reference):
-            return Run(Outcome.WRONG_UNITS, history, notes=(wrong,))
-        if reference is not None and is_identical(history, reference):
+        known = {"time": expected, **{name: x for name, x in reference.items() if name in OF_BLOCK}}
+        for _, difference in differences(scene, timed, known):
+            return Run(Outcome.WRONG_UNITS, history, notes=(difference,))
+        if is_identical(history, History(expected, reference)):
             notes = (f"{SAME_AS}{DDA.name}",)
         if np.max(np.abs(history.time - expected)) > 1e-6 * scene.time.step * steps:
             return Run(Outcome.WRONG_SHAPE, history, notes=(f"time begins {history.time[:2]}, not {expected[:2]} s",))
@@ -63,32 +66,32 @@ def run_of_columns(scene: Scene, columns: dict[str, Array]) -> Run:
     return Run(Outcome.COMPLETED, history, work, notes=(*notes, *tension_note(history)))
 
 
-def _wrong_units(scene: Scene, history: History, expected: Array, reference: History | None) -> str | None:
-    """Name the first column that is the built-in solution in another unit or with another sign."""
-    if (difference := factor("time", history.time, expected)) is not None:
-        return difference
-    for name, values in history.columns.items():
-        if reference is not None and name in OF_BLOCK and name in reference.columns:
-            expected_values = reference.columns[name]
-            if np.isfinite(expected_values).all() and (difference := factor(name, values, expected_values)) is not None:
-                return difference
-    return None if reference is None else force(scene, history, reference)
+def differences(scene: Scene, columns: Columns, reference: Columns) -> Iterator[tuple[str, str]]:
+    """Yield the columns that are a reference's in another unit, of another sign or a force, each with a sentence."""
+    for name, expected in reference.items():
+        if name not in columns or not np.isfinite(expected).all():
+            continue
+        difference = factor(name, columns[name][: len(expected)], expected)
+        if difference is None and name == PRESSURE:
+            difference = _force(scene, columns, reference)
+        if difference is not None:
+            yield name, difference
 
 
-def force(scene: Scene, history: History, reference: History) -> str | None:
+def _force(scene: Scene, columns: Columns, reference: Columns) -> str | None:
     """Say that the pressure is a force, if it is larger by the length of the base and the motion is as expected.
 
     With one spring in place of two, pressure and gap are larger by two: no force on a base of 2 m.
     """
-    if DISPLACEMENT not in history.columns or PRESSURE not in history.columns or PRESSURE not in reference.columns:
+    if DISPLACEMENT not in columns or DISPLACEMENT not in reference:
         return None
-    expected = reference.columns[DISPLACEMENT]
+    expected = reference[DISPLACEMENT]
     size = norm(expected)
-    if not (0 < size < math.inf and norm(history.columns[DISPLACEMENT] - expected) <= FORCE_TOLERANCE * size):
+    if not (0 < size < math.inf and norm(columns[DISPLACEMENT] - expected) <= FORCE_TOLERANCE * size):
         return None
     block = scene.stated_block
     width = 1.0 if block is None else block.base_length
-    values, pressure = history.columns[PRESSURE], reference.columns[PRESSURE]
+    values, pressure = columns[PRESSURE], reference[PRESSURE]
     sizes = norm(values), norm(pressure)
     if min(sizes) == 0 or not np.isfinite(sizes).all() or abs(width - 1) <= NEAR_ONE:
         return None
@@ -98,13 +101,14 @@ def force(scene: Scene, history: History, reference: History) -> str | None:
     return None
 
 
-def _reference(scene: Scene) -> History | None:
-    """Return the built-in solution, None where there is none: nobody's answer is refused for that."""
+def _reference(scene: Scene) -> Columns:
+    """Return the columns of the built-in solution, none where there is none: nobody's answer is refused for that."""
     dda = DDA()
     try:
-        return None if dda.refusal(scene) else dda.solve(scene.with_values({"time.allow_unstable": True})).history
+        history = None if dda.refusal(scene) else dda.solve(scene.with_values({"time.allow_unstable": True})).history
     except InputError:
-        return None
+        history = None
+    return {} if history is None else history.columns
 
 
 def factor(name: str, values: Array, expected: Array) -> str | None:

@@ -7,7 +7,6 @@ from validation.metrics.catalogue import CATALOGUE, PAIRS
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.registry import FULL, get_solver, is_solver, solver_names
-from validation.solvers.user import UserSolver
 
 
 def check_names(scene: Scene, source: str) -> None:
@@ -25,8 +24,7 @@ def check_names(scene: Scene, source: str) -> None:
             rule = f"must be among {', '.join(solver_names())}"
             raise InputError(rule, source=source, field="run.solvers", value=repr(name))
         adapter = get_solver(solver)
-        if isinstance(adapter, UserSolver):
-            adapter.check_module()
+        adapter.check_module()
         solver_columns |= dict.fromkeys(adapter.columns() or scene.run.columns)
     for column in scene.run.columns:
         if column not in solver_columns and not scene.kind.has_column(scene, column):

@@ -1,6 +1,7 @@
 """Adapter of solvers that users bring: ``module:attribute``, or a name of the entry-point group.
 
-The solver runs in a process of its own, so that one that hangs, exits or crashes is a row with a name.
+A user's solver runs in a process of its own, so that one that hangs, exits or crashes is a row with a name. Of a file
+or a program no more is known than of it, see `validation.solvers.files`.
 """
 
 from __future__ import annotations
@@ -8,7 +9,7 @@ from __future__ import annotations
 import importlib.util
 import os
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from importlib.machinery import PathFinder
 from pathlib import Path
@@ -23,7 +24,7 @@ from validation.runs.run import Outcome, Run
 from validation.runs.threads import environment
 from validation.scenes import features
 from validation.scenes.scene import Scene
-from validation.solvers.contract import NotReported, Prepared, Solver
+from validation.solvers.contract import REPORTABLE, NotReported, Prepared, Solver
 from validation.solvers.dda import DDA
 from validation.solvers.foreign import one_line, run_of_columns
 from validation.solvers.hooks import SolvingHooks
@@ -34,7 +35,6 @@ VARIABLE = "DDA_VALIDATE_TIMEOUT"  # sets another
 # s a step of the scene: an interpreted loop over a small dense system takes some 0.03 ms, a code that writes a line of
 # text some 0.1 ms; on a busy machine ten times that, with as much again in hand.
 ALLOWANCE = 5e-3
-PARTS = frozenset({"modes", "static"})  # what a solver may report beside its history
 ABOUT = ("program", "version", "recipe", "model", "settings")  # what a solver may say of itself, each in words
 # The first argument is the directory of this package, on the path for the import of `validation` alone: no folder of
 # that name beside the solver stands in the way, and no package beside ours hides one of Python.
@@ -45,24 +45,55 @@ START = (
 HOME = Path(__file__).resolve().parents[2]
 
 
-class UserSolver(Solver):
-    """A user's ``solve(scene)``, or an object or class with it and, where it likes, `static` and `modes`."""
+class Outside(Solver):
+    """A solver of which nothing is known but what it answers."""
 
     # what it is made of and reads cannot be known: it runs afresh, and scenes that differ anywhere are two cases
     sections = ("damping", "fem", "time", "run")
     cached = False
 
-    def __init__(self, name: str, target: str) -> None:
+    def __init__(self, name: str) -> None:
         self.name = name
-        self.target = target
-
-    def refusal(self, scene: Scene) -> str | None:
-        """Return None: what the solver handles is known in its own process only, which says so."""
-        return None
 
     def unhandled(self, scene: Scene) -> list[str]:
-        """Return nothing, see `refusal`."""
+        """Return nothing: who answers knows what it is made for, and says so."""
         return []
+
+    def build(self, scene: Scene, full: bool) -> Prepared:
+        """Take the scene; it is read or run when it is asked."""
+        return OutsideScene(self, scene)
+
+    def parts(self) -> frozenset[str]:
+        """Return nothing: a table holds no static solution and no modes."""
+        return frozenset()
+
+    def read(self, scene: Scene) -> Run:
+        """Return the history of a scene."""
+        raise NotImplementedError
+
+
+class OutsideScene(Prepared):
+    """A scene for such a solver."""
+
+    def __init__(self, solver: Outside, scene: Scene) -> None:
+        self.solver = solver
+        self.scene = scene
+
+    def history_run(self) -> Run:
+        """Return the history."""
+        return self.solver.read(self.scene)
+
+    def assumed_static(self) -> Mapping[str, float]:
+        """Return the static solution that settling is measured from where none is reported: the block's."""
+        return DDA().prepare(self.scene).static()
+
+
+class UserSolver(Outside):
+    """A user's ``solve(scene)``, or an object or class with it and, where it likes, `static` and `modes`."""
+
+    def __init__(self, name: str, target: str) -> None:
+        super().__init__(name)
+        self.target = target
 
     def build(self, scene: Scene, full: bool) -> Prepared:
         """Take the scene; the solver sees it when it is run."""
@@ -73,55 +104,53 @@ class UserSolver(Solver):
         return [sys.executable, "-P", "-c", START, str(HOME), self.target, os.getcwd(), *filter(None, sys.path)]
 
     def parts(self) -> frozenset[str]:
-        """Return what the solver can report beside its history; all of `PARTS` where it cannot even be imported."""
-        return frozenset(self._asked({"parts": sorted(PARTS)}).get("parts", PARTS))
+        """Return what the solver can report beside its history; all that one may where it cannot even be imported."""
+        return frozenset(self._introduced().get("parts", REPORTABLE))
 
     def check_module(self) -> None:
         """Refuse by an `InputError` a module that is nowhere where its process looks; nothing is imported for it."""
-        module = self.target.partition(":")[0]
-        folders: Sequence[str] | None = [os.getcwd(), *filter(None, sys.path)]
-        parts = module.split(".")
-        for depth, part in enumerate(parts):
-            name = ".".join(parts[: depth + 1])
-            spec = None if folders is None else PathFinder.find_spec(name, folders)
-            if spec is None and depth == 0:
-                spec = importlib.util.find_spec(part)  # what an editable install finds by a hook of its own
-            if spec is None:
-                stated = [os.getcwd(), *filter(None, os.environ.get("PYTHONPATH", "").split(os.pathsep))]
-                looked_in = f"looked in {', '.join(stated)} and the installed packages"
-                plain = ", without .py" if parts[-1] == "py" else ""
-                raise InputError(
-                    f"must be a module that Python finds{plain}",
-                    field="solver",
-                    value=repr(self.name),
-                    advice=looked_in,
-                )
-            folders = None if spec.submodule_search_locations is None else [*spec.submodule_search_locations]
+        first, *inner = self.target.partition(":")[0].split(".")
+        spec = PathFinder.find_spec(first, [os.getcwd(), *filter(None, sys.path)])
+        if spec is None:
+            spec = importlib.util.find_spec(first)  # what an editable install finds by a hook of its own
+        for part in inner:
+            folders = None if spec is None else spec.submodule_search_locations
+            spec = PathFinder.find_spec(part, folders) if folders else None
+        if spec is None:
+            stated = [os.getcwd(), *filter(None, os.environ.get("PYTHONPATH", "").split(os.pathsep))]
+            rule = f"must be a module that Python finds{', without .py' if inner[-1:] == ['py'] else ''}"
+            looked_in = f"looked in {', '.join(stated)} and the installed packages"
+            raise InputError(rule, field="solver", value=repr(self.name), advice=looked_in)
 
-    def load_error(self) -> str | None:
-        """Return None, or why the solver cannot be loaded."""
-        answer = self._asked({"parts": []})
-        return one_line(str(answer["raised"])) if "raised" in answer else None
+    def check_loads(self) -> None:
+        """Refuse by an `InputError` what is nowhere, or cannot be loaded."""
+        self.check_module()
+        answer = self._introduced()
+        if "raised" in answer:
+            reason = one_line(str(answer["raised"]))
+            raise InputError(f"cannot be loaded: {reason}", field="solver", value=repr(self.name))
 
     def about(self) -> dict[str, str]:
         """Return what the solver says of itself under `ABOUT`; nothing where it says nothing or cannot be imported."""
-        statements = self._asked({"about": list(ABOUT)}).get("about") or {}
-        return {name: one_line(str(text)) for name, text in dict(statements).items()}
+        statements = self._introduced().get("about", {})
+        return {name: one_line(str(text)) for name, text in statements.items()}
 
-    def _asked(self, request: dict[str, Any]) -> dict[str, Any]:
-        """Return the answer to a request that runs no scene; a worker that dies or hangs has "raised" that."""
+    def _introduced(self) -> dict[str, Any]:
+        """Return what the solver has beside a history and says of itself; one that dies or hangs has "raised" that."""
+        request = {"parts": sorted(REPORTABLE), "about": ABOUT}
         try:
             return ask(self.command(), environment(), request, base_limit())
         except (WorkerHangs, WorkerDied) as error:
             return {"raised": str(error)}
 
 
-class UserScene(Prepared):
+class UserScene(OutsideScene):
     """A scene for a user's solver; what it reports beside the history comes with it."""
 
+    solver: UserSolver
+
     def __init__(self, solver: UserSolver, scene: Scene) -> None:
-        self.solver = solver
-        self.scene = scene
+        super().__init__(solver, scene)
         self._answer: dict[str, Any] = {}
 
     def history_run(self) -> Run:
@@ -156,10 +185,6 @@ class UserScene(Prepared):
                     "must be zero or a normal number", field="static", value=f"{value!r} for {one_line(name)}"
                 )
         return values
-
-    def assumed_static(self) -> Mapping[str, float]:
-        """Return the static solution that settling is measured from where the solver reports none: the block's."""
-        return DDA().prepare(self.scene).static()
 
     def modes(self) -> tuple[Mode, ...]:
         """Return the modes that the solver reports."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -20,10 +20,9 @@ from validation.runs.numbers import error_percent
 from validation.runs.progress import Progress
 from validation.runs.run import Outcome, Run
 from validation.solvers.contract import Solver
-from validation.solvers.files import Outside
 from validation.solvers.foreign import SAME_AS
 from validation.solvers.registry import get_solver
-from validation.solvers.user import UserSolver
+from validation.solvers.user import Outside
 
 # The first answers of a user's solver that took no longer [s] are run a second time, which shows whether it repeats.
 REPEATED, REPEATED_WITHIN = 2, 10.0
@@ -34,34 +33,23 @@ DEFAULTS = "-default"  # ending of the name of a program as it comes
 HANDED_BACK = "It is bit for bit the exact motion that it is judged by: the suite's own answer, handed back."
 
 
-@dataclass(frozen=True, eq=False)
-class JudgedAnswer:
+@dataclass(frozen=True, eq=False, kw_only=True)
+class JudgedAnswer(Answer):
     """An answer with its verdict."""
 
-    answer: Answer
     problem: Problem
     history: History
     standard: Standard | None  # None of numbers, which no exact motion is needed for
     judgement: Judgement
     cause: Cause | None  # of a failure
-    warnings: tuple[str, ...] = ()  # what makes the verdict worth less, in sentences
 
 
-@dataclass(frozen=True, eq=False)
-class JudgedSet:
-    """The answers of one program, and the judgement of each that can be judged, by problem."""
-
-    answers: AnswerSet
-    judged: Mapping[str, JudgedAnswer]
-
-    @property
-    def stem(self) -> str:
-        """What the names of its files have in common; names of folders hold no underscore."""
-        return "_".join(part for part in self.answers.address if part)
-
-
-def judged_answer(answer: Answer, problem: Problem, history: History) -> JudgedAnswer:
-    """Judge an answer, and look for the cause of a failure."""
+def judged_answer(answer: Answer) -> Answer:
+    """Judge an answer, and look for the cause of a failure; one without a history has nothing to judge."""
+    problem = answer.problem
+    history = answer.history
+    if problem is None or history is None:
+        return answer
     reference = None if problem.numbers else standard(problem)
     judgement = judge(problem, history, reference)
     identified_cause = None
@@ -72,22 +60,22 @@ def judged_answer(answer: Answer, problem: Problem, history: History) -> JudgedA
             identified_cause = cause(problem, history, reference)
         if is_identical(history, reference.exact):
             warnings = (*warnings, HANDED_BACK)
-    return JudgedAnswer(answer, problem, history, reference, judgement, identified_cause, warnings)
+    verdict = {"standard": reference, "judgement": judgement, "cause": identified_cause, "warnings": warnings}
+    return JudgedAnswer(**{**vars(answer), **verdict})
 
 
-def judged_sets(sets: Sequence[AnswerSet], progress: Progress) -> list[JudgedSet]:
+def judged_sets(sets: Sequence[AnswerSet], progress: Progress) -> list[AnswerSet]:
     """Judge all answers of some programs."""
     total = sum(len(answer_set.answers) for answer_set in sets)
     number = 0
     judged_of_sets = []
     for answer_set in sets:
-        judged = {}
+        judged = []
         for answer in answer_set.answers:
             progress(number, total, f"{answer_set.program} {answer.name}")
-            if answer.problem is not None and answer.history is not None:
-                judged[answer.name] = judged_answer(answer, answer.problem, answer.history)
+            judged.append(judged_answer(answer))
             number += 1
-        judged_of_sets.append(JudgedSet(answer_set, judged))
+        judged_of_sets.append(replace(answer_set, answers=tuple(judged)))
     return judged_of_sets
 
 
@@ -103,12 +91,10 @@ def answers_of(name: str, problems: Sequence[Problem], progress: Progress) -> An
         There is no such solver, or what it reads is no history.
     """
     solver = get_solver(name)
-    about = {}
-    if isinstance(solver, UserSolver):
-        solver.check_module()
-        about = solver.about()
+    solver.check_module()
+    about = solver.about()
     answers = []
-    repeats = REPEATED if isinstance(solver, UserSolver | Outside) else 0
+    repeats = REPEATED if isinstance(solver, Outside) else 0
     for number, problem in enumerate(problems):
         progress(number, len(problems), f"{name} {problem.name}")
         answer = _answer(solver, problem)

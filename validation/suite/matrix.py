@@ -147,6 +147,18 @@ class CaseInPlace(Case):
         return get_solver(self.answered_by)
 
 
+def in_place(case: Case, solver: str) -> Case:
+    """Return a case with who answers it: a solver in the place of `JUDGED`, else its own."""
+    return CaseInPlace(**vars(case), answered_by=solver) if case.solver == JUDGED else case
+
+
+def reported(verdict: Verdict) -> Verdict:
+    """Return a verdict; what the solver has no way to report is no failure."""
+    if verdict.value != NOT_REPORTED:
+        return verdict
+    return replace(verdict, status=Status.NOT_RUN, why=f"the solver does not report {verdict.gate.metric}")
+
+
 def verify(
     shown: Phenomenon, results: Results, solver: str = JUDGED, jobs: int = 1, progress: Progress | None = None
 ) -> tuple[list[Verdict], list[str]]:
@@ -160,7 +172,7 @@ def verify(
     needed = {need for gate in gates for need in shown.needs(gate)}
     cases = [case for case in study.cases() if (case.scene.name, case.solver) in needed]
     if solver != JUDGED:
-        cases = [CaseInPlace(**vars(case), answered_by=solver) if case.solver == JUDGED else case for case in cases]
+        cases = [in_place(case, solver) for case in cases]
     finished = finish(cases, study, results, jobs=jobs, progress=progress)
     scenes = list({case.scene.name: case.scene for case in cases}.values())
     notes: Counter[str] = Counter()
@@ -171,11 +183,4 @@ def verify(
         notes.update(f"{note}: it was judged itself" for note in row.notes if note.startswith(SAME_AS))
     remarks = [f"{count} of {len(cases)} runs: {note}" for note, count in notes.items()]
     verdicts = [evaluate(gate, finished) for gate in existing(gates, scenes, finished)]
-    return [_reported(verdict) for verdict in verdicts], remarks
-
-
-def _reported(verdict: Verdict) -> Verdict:
-    """Return a verdict; what the solver has no way to report is no failure."""
-    if verdict.value != NOT_REPORTED:
-        return verdict
-    return replace(verdict, status=Status.NOT_RUN, why=f"not reported: {verdict.gate.metric}")
+    return list(map(reported, verdicts)), remarks

@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 
 from validation.engine.measure import completed
-from validation.problems.answers import FILE, TABLE, folder_name
-from validation.problems.data import ANSWERS, PACK
+from validation.problems.answers import FILE, TABLE
+from validation.problems.data import ANSWERS, PACK, folder_name
 from validation.problems.pack import TIME, csv_text
 from validation.problems.problem import names, problem
 from validation.solvers.registry import get_solver

@@ -8,7 +8,8 @@ from collections.abc import Iterator
 from validation.diagnosis.numbers import Values, layers
 from validation.metrics.values import largest
 from validation.models.column.tables import ColumnSection
-from validation.problems.bands import UNKNOWN, contact_values
+from validation.problems.bands import contact_values
+from validation.problems.numbered import UNKNOWN
 from validation.problems.problem import Number, ProblemHooks
 from validation.problems.quantities import arrival, last
 from validation.runs.columns import split, unit_of

@@ -22,10 +22,9 @@ from validation.report.front import front_chapter
 from validation.report.names import Readable
 from validation.report.references import PAPER, identity
 from validation.report.render import html
-from validation.report.site.places import check_place, write
 from validation.report.verification import matrix
 from validation.runs.case_name import scene_of
-from validation.runs.files import atomic_directory
+from validation.runs.files import atomic_directory, check_place, write_new
 from validation.runs.progress import Progress
 from validation.runs.results import Results
 
@@ -113,7 +112,7 @@ class Site:
             title, blocks, file=file, name=NAME, menu=menu, imprint=f"{self._imprint}.",
             figure=lambda figure: f"{stem}/{figure}", **values,  # type: ignore[arg-type]
         )  # fmt: skip
-        write(self._place / file, text)
+        write_new(self._place / file, text)
 
     def write_study(self, study: str) -> None:
         """Write the chapter of a study, and pages of scenes that no study before it has."""
@@ -203,9 +202,9 @@ class Site:
             CALCULATORS, "Calculators", [], template="calculators.html.j2", package=__package__, scripts=SCRIPTS
         )
         for name in (html.STYLE, html.SCRIPT):
-            write(self._place / name, html.static(name))
+            write_new(self._place / name, html.static(name))
         for name in SCRIPTS:
-            write(self._place / name, Path(__file__).with_name(name).read_text("utf-8"))
+            write_new(self._place / name, Path(__file__).with_name(name).read_text("utf-8"))
 
 
 def picture_of(page: str, blocks: Blocks) -> str:

@@ -1,8 +1,8 @@
 """The process in which a user's solver runs, see the command of `validation.solvers.user.UserSolver`.
 
 A request holds a scene, an answer the history that the solver returned, with static solution and modes where it has
-them, or the error "raised" and its place "at". A request of "parts" is answered with those that it has, one of "about"
-with what the solver says of itself.
+them, or the error "raised" and its place "at". One without a scene is answered with those of "parts" that the solver
+has, and with what it says of itself under the names of "about".
 """
 
 from __future__ import annotations
@@ -132,12 +132,11 @@ def answering(name: str) -> Callable[[dict[str, Any]], dict[str, Any]]:
         try:
             if not loaded:
                 loaded.append(load(name))
-            if "parts" in request:
-                return {"parts": [part for part in request["parts"] if hasattr(loaded[0], part)]}
-            if "about" in request:
-                statements = getattr(loaded[0], "about", {})
-                return {"about": {name: str(statements[name]) for name in request["about"] if name in statements}}
-            return run(loaded[0], request)
+            if "scene" in request:
+                return run(loaded[0], request)
+            statements = getattr(loaded[0], "about", {})
+            about = {name: str(statements[name]) for name in request["about"] if name in statements}
+            return {"parts": [part for part in request["parts"] if hasattr(loaded[0], part)], "about": about}
         except BaseException as error:  # anybody's code: what ends it is the answer, and no end of this process
             return {"raised": text_of(error), "at": place_of(error, Path(directory))}
 

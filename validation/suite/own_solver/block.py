@@ -15,9 +15,10 @@ from validation.runs.history import PRESSURE
 from validation.runs.numbers import share_text
 from validation.runs.results import Results
 from validation.runs.run import Outcome
+from validation.scenes.scene import Scene
 from validation.suite.matrix import JUDGED
 from validation.suite.own_solver import block_data, gates
-from validation.suite.own_solver.block_data import AtRest, Misreading
+from validation.suite.own_solver.block_data import Misreading
 from validation.suite.own_solver.gates import BLOCK_DATA, BLOCK_DATA_WORDS, GROUPS
 from validation.suite.own_solver.history import AT_REST
 from validation.suite.own_solver.session import LARGEST, GateReport
@@ -36,8 +37,8 @@ def block(results: Sequence[GateReport], every: bool = False) -> list[str]:
     failed = [t for t in judged if t.status == Status.FAIL]
     # what a solver misreads of the block, with the scenes that show it; nothing where its statics are wrong
     resting = [t for t in judged if t.group == BLOCK_DATA and t.metric == AT_REST]
-    measured = [AtRest(t.scene, float(t.value), (t.high - t.low) / 2) for t in resting if isinstance(t.value, float)]
-    misreadings = block_data.misreadings(measured)
+    rests = {t.scene: (t.value, (t.high - t.low) / 2) for t in resting if isinstance(t.value, float)}
+    misreadings = block_data.misreadings(rests)
     statics = [t for t in failed if t.group == "statics"]
     misread = {} if any(not _follows(t, misreadings) for t in statics) else misreadings
     plain = [t for t in failed if t.group != BLOCK_DATA and not _follows(t, misread)]
@@ -45,7 +46,7 @@ def block(results: Sequence[GateReport], every: bool = False) -> list[str]:
         *_table(results),
         *_warnings(results),
         *_headline(judged, failed, plain),
-        *_block_data(judged, failed, misread),
+        *_block_data(judged, failed, plain, misread),
         *_failures(failed, every),
         *_endings(results),
         *_not_run(results),
@@ -127,12 +128,18 @@ def _headline(judged: Sequence[GateReport], failed: Sequence[GateReport], plain:
 
 def _follows(result: GateReport, misread: Collection[Misreading]) -> bool:
     """Whether a gate is on a scene that a solver misreads."""
-    case = gates.cases(result.study).get((result.scene, JUDGED)) if misread else None
-    return case is not None and any(block_data.is_misread(case.scene, one) for one in misread)
+    return any(block_data.is_misread(_scene(result), one) for one in misread)
+
+
+def _scene(result: GateReport) -> Scene:
+    return gates.cases(result.study)[result.scene, JUDGED].scene
 
 
 def _block_data(
-    judged: Sequence[GateReport], failed: Sequence[GateReport], misread: Mapping[Misreading, list[str]]
+    judged: Sequence[GateReport],
+    failed: Sequence[GateReport],
+    plain: Sequence[GateReport],
+    misread: Mapping[Misreading, list[str]],
 ) -> Iterator[str]:
     """Yield with which data of the block a solver is right, and which of them it misreads."""
     data = block_data.datum_of()
@@ -141,14 +148,13 @@ def _block_data(
     right = [datum.words for scene, datum in data.items() if scene in scenes_of_data - {t.scene for t in wrong}]
     if right:
         yield f"{BLOCK_DATA}: right with {', '.join(right)}"
-    plain = [t for t in failed if t.group != BLOCK_DATA and not _follows(t, misread)]
     if wrong and any(t.group == "statics" for t in plain):
         yield f"        {BLOCK_DATA}: {MAY_FOLLOW}"
         return
     for misreading, scenes in misread.items():
         where = ", ".join(data[scene].words for scene in scenes)
         yield f"wrong:  {BLOCK_DATA} - {misreading.words} (seen with {where})"
-    following = {t.group for t in failed if t.group != BLOCK_DATA and _follows(t, misread)} - {t.group for t in plain}
+    following = {t.group for t in failed} - {t.group for t in plain} - {BLOCK_DATA}
     if following:
         yield f"        {', '.join(group for group in GROUPS if group in following)}: {MAY_FOLLOW}"
     for t in wrong:
@@ -160,16 +166,11 @@ def _block_data(
             )
     if not any(t.group in ("digits", "pressure") for t in plain):
         suspects = "the moment of inertia, or where width and height enter"
-        if not any(_is_discounted(t) for t in judged if t.group == "digits"):
+        if not any(_scene(t).time.discount < 1 for t in judged if t.group == "digits"):
             suspects = f"gg, which is below 1 in no other scene that was judged, {suspects}"
         for t in _moving(wrong):
             words = f"{data[t.scene].words}: {t.metric.partition('.')[0]} before it rests"
             yield f"wrong:  {BLOCK_DATA} - {words}: {suspects}"
-
-
-def _is_discounted(result: GateReport) -> bool:
-    case = gates.cases(result.study).get((result.scene, JUDGED))
-    return case is not None and case.scene.time.discount < 1
 
 
 def _moving(failed: Sequence[GateReport]) -> list[GateReport]:
@@ -233,8 +234,7 @@ def _not_run(results: Sequence[GateReport]) -> Iterator[str]:
 
 def _unseen(judged: Sequence[GateReport]) -> Iterator[str]:
     """Yield what no gate has seen of the solver: a pass says nothing of it."""
-    judged_cases = {(t.study, t.scene): gates.cases(t.study).get((t.scene, JUDGED)) for t in judged}
-    kinds = gates.unseen(case.scene for case in judged_cases.values() if case is not None)
+    kinds = gates.unseen({(t.study, t.scene): _scene(t) for t in judged}.values())
     if judged and kinds:
         yield f"\nno gate saw: {', '.join(kinds)}; what passed says nothing of it"
 
@@ -271,9 +271,8 @@ def diagnosis(failed: Sequence[GateReport], groups: Sequence[str]) -> Iterator[s
     if chosen is None or history is None:
         return
     yield f"\ncompare, {chosen.scene} ({chosen.steps} steps)"
-    scene = gates.cases(chosen.study)[chosen.scene, JUDGED].scene
     try:
-        answer = compare(scene, Foreign(history.time, history.displacement, history.columns.get(PRESSURE)))
+        answer = compare(_scene(chosen), Foreign(history.time, history.displacement, history.columns.get(PRESSURE)))
     except Exception as error:  # numbers of anybody's code: the rest of the block stands without it
         yield f"  nothing can be said: {error}"
         return

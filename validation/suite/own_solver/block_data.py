@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -119,19 +119,6 @@ MISREADINGS = (
 )
 
 
-@dataclass(frozen=True)
-class AtRest:
-    """Where a solver comes to rest in the scene of a datum [m], and half the width of its gate's band [m]."""
-
-    scene: str
-    value: float
-    half_width: float
-
-    def is_at(self, expected: float) -> bool:
-        """Whether that is where it rests."""
-        return abs(self.value - expected) <= self.half_width
-
-
 def misread_displacement(scene: Scene, misreading: Misreading) -> float:
     """Return where the centroid rests in the scene that such a solver takes for this one [m]."""
     return displacement_at_rest(scene.with_values(misreading.values(scene)))
@@ -144,22 +131,20 @@ def is_misread(scene: Scene, misreading: Misreading) -> bool:
     return not math.isclose(misread_displacement(scene, misreading), displacement_at_rest(scene), rel_tol=ROUNDED)
 
 
-def misreadings(measured: Sequence[AtRest]) -> dict[Misreading, list[str]]:
+def misreadings(rests: Mapping[str, tuple[float, float]]) -> dict[Misreading, list[str]]:
     """Return what was misread, with the names of the scenes that show it.
 
     A misreading changes some of the scenes by more than their bands, and in each of those the solver rests where the
-    scene so read would.
+    scene so read would. `rests` is where it rests in each scene [m], and half the width of its gate's band [m].
     """
     named = {}
     by_name = {scene.name: scene for scene in scenes()}
     for misreading in MISREADINGS:
-        shows, holds = [], True
-        for one in measured:
-            scene = by_name[one.scene]
-            expected = misread_displacement(scene, misreading)
-            if not math.isclose(expected, displacement_at_rest(scene), abs_tol=one.half_width):
-                shows.append(one.scene)
-                holds = holds and one.is_at(expected)
-        if shows and holds:
-            named[misreading] = shows
+        shows = {}
+        for name, (value, half_width) in rests.items():
+            expected = misread_displacement(by_name[name], misreading)
+            if not math.isclose(expected, displacement_at_rest(by_name[name]), abs_tol=half_width):
+                shows[name] = abs(value - expected) <= half_width
+        if shows and all(shows.values()):
+            named[misreading] = list(shows)
     return named

@@ -6,8 +6,7 @@ A solver that is one function reports no modes and no static solution. Its histo
 from __future__ import annotations
 
 import functools
-import math
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
 
 from validation.engine.case import Case
@@ -16,6 +15,7 @@ from validation.engine.study import Study
 from validation.gates.gate import Gate
 from validation.metrics.catalogue import CATALOGUE, HISTORY, MODES, REFERENCE, STATIC
 from validation.scenes import features
+from validation.scenes.keys import is_fulfilled
 from validation.scenes.scene import Scene, load_scene
 from validation.suite.bands import about, near
 from validation.suite.folders import get_study, judged_studies
@@ -57,28 +57,33 @@ def _start() -> Iterator[Gate]:
             yield Gate(scene.name, pair, metric, 0, high, same)
 
 
-# what gates may see of a solver: a kind of scene in words, and whether a scene is of it
-KINDS: dict[str, Callable[[Scene], bool]] = {
-    "a rectangle that is no square": lambda s: math.dist(*s.block.outline[:2]) != math.dist(*s.block.outline[1:3]),
-    "Poisson's ratio": lambda s: s.block.poisson != 0,
-    "plane strain": lambda s: s.block.hypothesis == "plane strain" and s.block.poisson != 0,
-    "shear springs of their own stiffness": lambda s: s.contact.shear != s.contact.stiffness,
-    "an off-centre load": lambda s: s.load.eccentricity != 0,
-    "an outline that is no rectangle": lambda s: s.block.vertices is not None,
-    "a shear load": lambda s: s.load.traction != 0,
-    "gravity": lambda s: s.load.gravity != 0,
-    "contact that opens": lambda s: s.contact.law == "unilateral",
-    "friction": lambda s: s.contact.friction is not None,
-    "a base that moves": lambda s: s.load.base_motion is not None,
-    "a gap or a velocity at the start": lambda s: s.contact.gap != 0 or s.block.velocity != 0,
-    "viscous damping": lambda s: s.damping.present,
+# what gates may see of a solver: a kind of scene in words, and what its tables say, as of `features.Feature`
+KINDS: Mapping[str, tuple[str, ...]] = {
+    "a rectangle that is no square": ("block.height",),
+    "Poisson's ratio": ("block.poisson",),
+    "plane strain": ('block.hypothesis = "plane strain"', "block.poisson"),
+    "shear springs of their own stiffness": ("contact.shear_stiffness",),
+    "an off-centre load": ("load.eccentricity",),
+    "an outline that is no rectangle": ("block.vertices",),
+    "a shear load": ("load.traction",),
+    "gravity": ("load.gravity",),
+    "contact that opens": ('contact.law = "unilateral"',),
+    "friction": ("contact.friction",),
+    "a base that moves": ("load.base_motion",),
+    "a gap at the start": ("contact.gap",),
+    "a velocity at the start": ("block.velocity",),
+    "viscous damping": ("damping.present",),
 }
 
 
 def unseen(scenes: Iterable[Scene]) -> list[str]:
     """Return the kinds of scenes that none of some scenes is."""
-    every = list(scenes)
-    return [kind for kind, is_one in KINDS.items() if not any(is_one(scene) for scene in every)]
+    every = [scene.tables() for scene in scenes]
+    return [
+        kind
+        for kind, says in KINDS.items()
+        if not any(all(is_fulfilled(one, "", tables) for one in says) for tables in every)
+    ]
 
 
 @functools.cache
@@ -116,15 +121,9 @@ def applying() -> Mapping[str, tuple[str, Gate]]:
     """
     by_id: dict[str, tuple[str, Gate]] = {}
     for study in judged_studies():
-        if _has_blocks(study) and any(map(_is_two_blocks, cases(study).values())):
+        if any(map(_is_two_blocks, cases(study).values())):
             by_id |= {gate.id: (study, gate) for gate in get_study(study).gates() if applies(study, gate)}
     return by_id | {gate.id: (START.name, gate) for gate in START.gates()}
-
-
-def _has_blocks(study: str) -> bool:
-    """Whether a study has a scene of a block, told before its cases are made."""
-    scenes = (load_scene(declared) if isinstance(declared, str) else declared for declared in study_of(study).scenes)
-    return any(not scene.kind.feature for scene in scenes)
 
 
 @functools.cache

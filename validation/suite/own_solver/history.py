@@ -75,14 +75,11 @@ def rest(x: Array) -> tuple[float, float]:
 def root(scene: Scene, history: History) -> Root | None:
     """Return the strongest oscillation of the displacement by a matrix pencil, None where it is no sum of powers."""
     x = history.displacement[BEGUN:]
-    size = largest(x)
-    if size == 0 or not np.isfinite(size):
-        return None
     motion = swing(x, scene.time.step, POWERS)
     pole = motion.pole
     if pole is None or motion.misfit > TOLERATED:
         return None
-    relative_noise = MARGIN * motion.misfit * size / pole.amplitude
+    relative_noise = MARGIN * motion.misfit * largest(x) / pole.amplitude
     error = float(relative_noise * _bound(pole.value, motion.samples) / abs(np.log(pole.value)))
     return Root(pole.frequency, pole.damping, error)
 

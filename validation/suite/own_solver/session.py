@@ -18,12 +18,10 @@ from validation.runs.history import History
 from validation.runs.results import Results
 from validation.runs.row import Row, Value
 from validation.runs.run import Outcome
-from validation.solvers.files import Outside
 from validation.solvers.foreign import SAME_AS
 from validation.solvers.registry import get_solver
-from validation.solvers.user import PARTS, UserSolver
 from validation.suite.folders import judged_studies
-from validation.suite.matrix import JUDGED, CaseInPlace
+from validation.suite.matrix import JUDGED, in_place, reported
 from validation.suite.own_solver import gates, history
 
 REPEATED, SHORT = 2, 1000  # scenes that are run twice, and the most steps of one
@@ -51,8 +49,7 @@ class GateReport:
     key: str  # of its history in `results`
     results: str  # directory
     same_as: str = ""  # solvers of the suite, separated by blanks, whose history of this scene is this one bit for bit
-    repeated: bool = False  # whether the scene was run twice
-    apart_in: str = ""  # the column in which the two runs differ most, by more than rounding
+    apart_in: str = ""  # the column in which two runs of the scene differ most, by more than rounding
     apart: float = 0.0  # by how much: relative L2 [1]
 
 
@@ -91,7 +88,7 @@ class GateRuns:
     def _case(self, case: Case, kept: Container[str]) -> Case:
         """Return a case with who answers it; the suite's own with the metrics that gates ask for, or of a kept row."""
         if self.solver != JUDGED:
-            return CaseInPlace(**vars(case), answered_by=self.solver) if case.solver == JUDGED else case
+            return in_place(case, self.solver)
         required_metrics = gates.asked(self.studies).get((case.scene.name, case.solver), frozenset())
         return case if case.key() in kept else replace(case, only=required_metrics)
 
@@ -102,13 +99,11 @@ class Session(GateRuns):
     def __init__(self, user: str, results: Results) -> None:
         super().__init__(results, judged_studies(), user)
         self._differences: dict[str, tuple[str, float]] = {}  # of the scenes that were run twice
-        self._same: dict[tuple[str, str], bool] = {}  # by scene and solver of the suite
 
     @cached_property
     def parts(self) -> frozenset[str]:
         """What the solver reports beside its history, among "modes" and "static"."""
-        solver = get_solver(self.solver)
-        return solver.parts() if isinstance(solver, UserSolver | Outside) else PARTS
+        return get_solver(self.solver).parts()
 
     def judge(self, name: str) -> tuple[Verdict, GateReport]:
         """Run what a gate needs, and judge it; what cannot be judged is not run."""
@@ -132,8 +127,7 @@ class Session(GateRuns):
             "" if row is None else str(row.outcome),
             "" if row is None else row.key,
             str(self.results.directory),
-            self._same_as(case.scene.name),
-            case.scene.name in self._differences,
+            self._same_as(study, gate),
             apart_in,
             min(apart, LARGEST),
         )
@@ -153,10 +147,7 @@ class Session(GateRuns):
         own_history = self._history(case.scene.name)
         if own_history is not None and gates.shown_by_history(gate, case.scene) and self._by_history(study, gate, row):
             return judge(*history.shown(judged, case.scene, own_history))
-        verdict = replace(self.verdict(study, gate), gate=judged)
-        if verdict.value == NOT_REPORTED:
-            return replace(verdict, status=Status.NOT_RUN, why=f"the solver does not report {gate.metric}")
-        return verdict
+        return replace(reported(self.verdict(study, gate)), gate=judged)
 
     def _history(self, scene: str, solver: str = JUDGED) -> History | None:
         return Finished(self.rows, self.results).history(scene, solver)
@@ -181,24 +172,19 @@ class Session(GateRuns):
         if again.history is not None:
             self._differences[case.scene.name] = largest_difference(own_history, again.history)
 
-    def _same_as(self, scene: str) -> str:
-        """Return the solvers of the suite whose history of a scene is the user's bit for bit.
+    def _same_as(self, study: str, gate: Gate) -> str:
+        """Return the solvers of the suite whose history of a gate's scene is the user's bit for bit.
 
-        `dda` is compared where the run is checked; of the others those that gates have needed.
+        `dda` is compared where the run is checked; of the others those that the gate needs.
         """
-        row = self.rows.get((scene, JUDGED))
-        if row is None:
+        row = self.rows.get((gate.scene, JUDGED))
+        own_history = self._history(gate.scene)
+        if row is None or own_history is None:
             return ""
         same = [note.removeprefix(SAME_AS) for note in row.notes if note.startswith(SAME_AS)]
-        for name, solver in self.rows:
-            if name != scene or solver == JUDGED:
-                continue
-            if (name, solver) not in self._same:
-                own_history = self._history(name)
-                other = self._history(name, solver)
-                is_same = own_history is not None and other is not None and is_identical(own_history, other)
-                self._same[name, solver] = is_same
-            if self._same[name, solver]:
+        for scene, solver in gates.study_of(study).needs(gate):
+            other = self._history(scene, solver) if scene == gate.scene and solver != JUDGED else None
+            if other is not None and is_identical(own_history, other):
                 same.append(solver)
         return " ".join(same)
 
