@@ -28,6 +28,7 @@ from validation.report.blocks import Callout, FigureBlock, Paragraph, Table
 from validation.report.chapters import compare as chapters_compare
 from validation.report.figures import histories as figures
 from validation.report.figures.curves import style_of
+from validation.solvers.history_table import HeaderNames
 
 KEPT = Path(__file__).with_name("numbers.toml")
 STAGES = tuple(
@@ -194,8 +195,8 @@ def test_a_wrong_pressure_dates_the_departure_and_a_remedy_takes_the_place_of_wh
     assert answer.causes == ["pressure-factor"]
     assert answer.departure.step == 1
     run = solve(SCENE, "dda")
-    given = {"names": {"time": "t", "displacement": "p"}, "scale": {"time": 1e-3}}
-    answer = compare(SCENE, Foreign(run.time, run.contact_pressure, 1e3 * run.displacement, **given))
+    header = HeaderNames({"time": "t", "displacement": "p"}, {"time": 1e-3})
+    answer = compare(SCENE, Foreign(run.time, run.contact_pressure, 1e3 * run.displacement, header=header))
     assert answer.causes == ["swapped", "unit"]
     assert options(answer.remedy) == {
         "--columns": "time=t,displacement=contact_pressure,contact_pressure=p",

@@ -135,7 +135,7 @@ def _of_swapped(scene: Scene, foreign: Foreign, pair: tuple[str, str], tolerance
     foreign = exchanged(foreign, *pair)
     answer = DiagnosisHooks.of(scene).judged(scene, foreign, tolerance)
     first, second = (name.replace("_", " ") for name in pair)
-    columns = ",".join(f"{name}={place}" for name, place in foreign.names.items())
+    columns = ",".join(f"{name}={place}" for name, place in foreign.header.theirs.items())
     remedy = " ".join([f"--columns {columns}", remedy_of(foreign, answer.slips), answer.remedy]).strip()
     sentence = f"The {first} is in the column of the {second}, and the reverse. Read so: {answer.sentence}"
     causes = answer.causes if UNEXPLAINED in answer.causes else [SWAPPED, *answer.causes]
