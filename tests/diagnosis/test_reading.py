@@ -48,7 +48,7 @@ def test_a_point_is_picked_by_name(tmp_path):
         read(both, HeaderNames({"displacement": "measpoint3"}))
 
 
-@pytest.mark.parametrize("separator", [",", ";", "\t", " "])
+@pytest.mark.parametrize("separator", [";", " "])
 def test_a_table_with_other_names_units_and_sign(tmp_path, separator):
     rows = [("t", "uy", "sig"), (0, 0, 0), (2, 1.5, 0.5), (4, 2.5, 1), (6, 3, 2), (8, 3.5, 2.5)]
     text = "# made elsewhere\n" + "\n".join(separator.join(map(str, row)) for row in rows)
@@ -149,6 +149,5 @@ def test_too_many_rows_are_refused_before_they_are_parsed(tmp_path, monkeypatch)
 
 
 def test_decimal_commas_beside_semicolons_are_read(tmp_path):
-    path = tmp_path / "comma.csv"
-    path.write_text("time;displacement\n0,1;-1,5e-3\n0,2;-2e-3\n0,3;-2,5e-3\n0,4;-3e-3\n")
+    path = written(tmp_path, "time;displacement\n0,1;-1,5e-3\n0,2;-2e-3\n0,3;-2,5e-3\n0,4;-3e-3\n")
     assert np.array_equal(read(path).displacement, [-1.5e-3, -2e-3, -2.5e-3, -3e-3])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -73,15 +73,10 @@ def compare(
         raise typer.Exit(1)
 
 
-def _listed(alternative: dict[str, Any]) -> str:
-    values = alternative["values"]
-    return " and ".join(f"{name} {values[name]:.5g}" if name in values else name for name in alternative["causes"])
-
-
 def _lines(answer: Answer) -> Iterator[str]:
     """Yield the sentence first, then what it rests on."""
     from validation.diagnosis.causes import CAUSES
-    from validation.diagnosis.sentences import told_lines
+    from validation.diagnosis.sentences import family, told_lines
 
     yield answer.sentence
     if answer.remedy:
@@ -94,7 +89,7 @@ def _lines(answer: Answer) -> Iterator[str]:
             yield f"  {name:<18} {number:>10}  {CAUSES[name].words}"
     for alternative in answer.alike:
         further = alternative["further_scene"]
-        yield f"\n{_listed(alternative)} would give the same history here; to tell them apart, try {further}"
+        yield f"\n{family(alternative)} would give the same history here; to tell them apart, try {further}"
     if answer.evidence:
         yield "\nevidence"
         for stage in answer.evidence:

@@ -22,8 +22,8 @@ from typing import Any, ClassVar, TypeAlias
 import numpy as np
 
 from validation.diagnosis import evidence, sentences
-from validation.diagnosis.answer import Answer
-from validation.diagnosis.causes import CAUSES, UNEXPLAINED, all_benign
+from validation.diagnosis.answer import Answer, curves, finished
+from validation.diagnosis.causes import CAUSES, all_benign
 from validation.diagnosis.constants import (
     ARITHMETIC,
     CHANGE,
@@ -43,17 +43,15 @@ from validation.diagnosis.fits.bar import last_digits, norm, outlying, spread_of
 from validation.diagnosis.numbers import CandidateChange, Values
 from validation.diagnosis.one_change import Fitted, fitted, nearest, nearest_start
 from validation.diagnosis.reading import Foreign
-from validation.diagnosis.readings import Reading, words_of_slips
+from validation.diagnosis.readings import Reading
 from validation.diagnosis.schemes import scheme_numbers
 from validation.diagnosis.variant import own_scheme
 from validation.errors import InputError
 from validation.metrics.contact import AGREED
 from validation.metrics.values import largest
-from validation.runs.history import PRESSURE, Array
+from validation.runs.history import Array
 from validation.runs.numbers import ROUNDING, significant
 from validation.scenes.scene import Scene
-from validation.solvers.contract import Role
-from validation.solvers.registry import by_role
 
 Candidate: TypeAlias = CandidateChange[Values]
 
@@ -421,64 +419,42 @@ def answer_of(
     search = verdict.search
     reading = search.reading
     explained = verdict.explained
-    columns = verdict.columns
-    scene_misfit, misfit = (math.hypot(*search.misfits(run)) for run in (search.scene_run, columns))
-    unexplained = 0.0 if explained else significant(min(misfit / scene_misfit, 1.0) if scene_misfit else 1.0, 4)
-    ids = [*reading.slips, *verdict.causes] if explained else [UNEXPLAINED]
-    departure = None if all_benign(ids) else search.departure(verdict)
+    scene_misfit, misfit = (math.hypot(*search.misfits(run)) for run in (search.scene_run, verdict.columns))
     own = own_scheme(search.scene)
     scheme = scheme_numbers(own)
     stated = sentences.scheme_of(own)
-    values = {name: significant(value, 6) for name, value in verdict.causes.items() if value is not None}
-    words = words_of_slips(reading.corrected)
+    words = dict(verdict.words)
     if explained:
-        words |= {name: verdict.words[name] for name in verdict.causes}
         if {"scheme", "start"} & verdict.causes.keys():
             scheme |= {name: verdict.best[f"time.{name}"] for name in ("alpha", "delta")}
         scheme["gg"] = verdict.best.get("time.gg", scheme["gg"])
-        if "scheme" in verdict.causes:
+        if "scheme" in words:
             words["scheme"] = f"a different scheme from the scene's {stated}"
             stated = verdict.words["scheme"]
-        elif "exact-in-time" in verdict.causes:
+        elif "exact-in-time" in words:
             scheme = dict.fromkeys(("alpha", "delta", "gg"))
             stated = sentences.scheme_words(None, None, None)
         else:
             stated = sentences.scheme_of(replace(own, gg=scheme["gg"]))
-    nearest_causes: dict[str, Any] | None = None
-    if not explained and not verdict.alike and verdict.causes:
-        nearest_causes = {"causes": list(verdict.causes), "values": values, "left": unexplained}
-    stages = [*_stages(search), *more_stages]
-    if explained and ids and all_benign(ids):
-        stages = [evidence.surrounded(stage) for stage in stages]
-    subject = sentences.Subject(
-        stated, words, departure, sentences.remaining(misfit), verdict.alike, search.model_words
-    )
-    if explained:
-        sentence = sentences.sentence(subject)
-    else:
-        sentence = sentences.not_explained(subject, nearest_causes, unexplained, stages)[:-1]
-        sentence = f"{sentence}; {_first_rows(search)}."
-    (judged_solver, *_) = by_role(Role.JUDGED)
-    curves = {"the file": search.recorded, judged_solver: search.scene_run, "best": columns}
-    has_pressure = PRESSURE in search.NAMES[: len(columns)]
     horizon = [_horizon(search)] if search.rows < search.scene_run.shape[1] else []
-    return Answer(
-        sentence=sentence,
-        causes=ids,
+    is_fault = not (explained and all_benign([*reading.slips, *verdict.causes]))
+    answer = Answer(
+        causes=list(verdict.causes),
+        values={name: significant(value, 6) for name, value in verdict.causes.items() if value is not None},
         scheme=scheme,
-        departure=departure,
+        departure=search.departure(verdict) if is_fault else None,
         notes=(*foreign.notes, *reading.notes, *horizon, *notes),
         misfit=misfit,
-        curves={name: (search.time, run[0]) for name, run in curves.items()},
-        values=values if explained else {},
-        unexplained=unexplained,
-        nearest=nearest_causes,
+        curves=curves(search.time, search.NAMES, search.recorded, search.scene_run, verdict.columns),
+        unexplained=0.0 if explained else significant(min(misfit / scene_misfit, 1.0) if scene_misfit else 1.0, 4),
         alike=[dict(one) for one in verdict.alike],
-        evidence=tuple(stages),
-        pressures={name: run[1] for name, run in curves.items()} if has_pressure else {},
-        slips=reading.corrected if explained else (),
+        evidence=(*_stages(search), *more_stages),
         model=search.model,
     )
+    answer = finished(answer, reading, explained, words, stated, search.model_words)
+    if explained:
+        return answer
+    return replace(answer, sentence=f"{answer.sentence[:-1]}; {_first_rows(search)}.")
 
 
 def _first_rows(search: SceneSearch) -> str:

@@ -142,13 +142,11 @@ def intervals_of(target: Target, explanation: Fit, ids: Sequence[str]) -> dict[s
     for name, interval in intervals(explanation).items():
         if not math.isfinite(interval.half_width):
             continue
-
-        def moved(by: float, name: str = name, value: float = interval.value) -> dict[str, float]:
-            return values_of(target.column, ids, changed(explanation.variant, {name: value + by}))
-
-        low = moved(-interval.half_width)
-        high = moved(interval.half_width)
-        elsewhere = moved(SPAN[name])  # an exact fit has no width, and still belongs to its value
+        low, high, elsewhere = (
+            values_of(target.column, ids, changed(explanation.variant, {name: interval.value + by}))
+            # an exact fit has no width, and still belongs to its value
+            for by in (-interval.half_width, interval.half_width, SPAN[name])
+        )
         for cause, value in values.items():
             if elsewhere[cause] != value:
                 ends[cause] = (min(low[cause], high[cause]), max(low[cause], high[cause]))
@@ -157,7 +155,7 @@ def intervals_of(target: Target, explanation: Fit, ids: Sequence[str]) -> dict[s
     return ends
 
 
-def band_interval(target: Target, variant: Variant, cause: str = "dead-band") -> tuple[float, float]:
+def band_interval(target: Target, variant: Variant, cause: str) -> tuple[float, float]:
     """Return the penetrations, or tensions, that give the same rows: a limit lies between two that happened."""
     least = fit_one(target, variant).misfit
     field = BAND_FIELDS[cause]

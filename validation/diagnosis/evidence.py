@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
@@ -117,10 +117,6 @@ class Stage:
     words: str
     numbers: dict[str, float | None]
 
-    def as_dict(self) -> dict[str, Any]:
-        """Return plain data."""
-        return {"stage": self.name, "agrees": self.agrees, "words": self.words, **self.numbers}
-
 
 def surrounded(stage: Stage, explained_by: str = "what surrounds the block") -> Stage:
     """Return a stage whose number differs from the scene's for a reason that is no fault."""
@@ -169,15 +165,9 @@ def earlier(departure: Departure | None, single_rows: Sequence[tuple[str, int, f
     return departure
 
 
-def stages(target: Target, expected: Sequence[Array], reading: Reading, factor: float | None) -> list[Stage]:
-    """Return the stages up to the damping, with the scene's own displacement and pressure at the recorded rows.
-
-    The factor is the growth in a step, None if bounded.
-    """
-    bounded = "bounded" if factor is None else f"grows by a factor of {factor:.4g} a step"
-    measured = [reading_stage(reading), Stage("bounded", factor is None, bounded, {"growth": factor})]
-    if factor is not None:
-        return measured
+def stages(target: Target, expected: Sequence[Array], reading: Reading) -> list[Stage]:
+    """Return the stages up to the damping, with the scene's own displacement and pressure at the recorded rows."""
+    measured = [reading_stage(reading)]
     for name, values, expected_values, bar in zip(
         (DISPLACEMENT, PRESSURE), target.recorded, expected, target.bars, strict=False
     ):

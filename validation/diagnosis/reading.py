@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 
@@ -187,8 +187,7 @@ def steppings(foreign: Foreign, step: float) -> list[Stepping]:
     slip = _unit_slip(usual / step) if foreign.steps is None else None
     if slip:
         inner = steppings(Foreign(foreign.time / slip, foreign.displacement), step)[0]
-        note = f"the times are {slip:g} times those of the scene: a unit error"
-        return [Stepping(inner.steps, inner.rows, note, slip)]
+        return [replace(inner, factor=slip)]
     if foreign.steps is not None and np.ptp(foreign.steps) > SEEN * usual:
         return [Stepping(foreign.steps, every, "the times are not uniform: the program changed its step")]
     multiples = _multiples(gaps, step)

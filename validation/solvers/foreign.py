@@ -88,14 +88,21 @@ def force(scene: Scene, history: History, reference: History) -> str | None:
         return None
     block = scene.stated_block
     width = 1.0 if block is None else block.base_length
-    values, pressure = history.columns[PRESSURE], reference.columns[PRESSURE]
-    sizes = norm(values), norm(pressure)
-    if min(sizes) == 0 or not np.isfinite(sizes).all() or abs(width - 1) <= NEAR_ONE:
+    likeness = _likeness(history.columns[PRESSURE], reference.columns[PRESSURE])
+    if likeness is None or abs(width - 1) <= NEAR_ONE:
         return None
-    is_alike = float((values / sizes[0]) @ (pressure / sizes[1])) >= LEAST_CORRELATION
-    if is_alike and abs(sizes[0] / sizes[1] / width - 1) < FORCE_TOLERANCE:
+    ratio, correlation = likeness
+    if correlation >= LEAST_CORRELATION and abs(ratio / width - 1) < FORCE_TOLERANCE:
         return f"wrong units: {PRESSURE} is {width:g} times what is expected, the length of the base: a force?"
     return None
+
+
+def _likeness(values: Array, expected: Array) -> tuple[float, float] | None:
+    """Return the ratio of the norms of a column and of what is expected, and their correlation; None where one is 0."""
+    norms = norm(values), norm(expected)
+    if min(norms) == 0 or not np.isfinite(norms).all():
+        return None
+    return norms[0] / norms[1], float((values / norms[0]) @ (expected / norms[1]))
 
 
 def _reference(scene: Scene) -> History | None:
@@ -109,13 +116,10 @@ def _reference(scene: Scene) -> History | None:
 
 def factor(name: str, values: Array, expected: Array) -> str | None:
     """Say by which known factor a column differs from what is expected, if by one."""
-    norms = norm(values), norm(expected)
-    if min(norms) == 0 or not np.isfinite(norms).all():
+    likeness = _likeness(values, expected)
+    if likeness is None or abs(likeness[1]) < LEAST_CORRELATION:
         return None
-    correlation = float((values / norms[0]) @ (expected / norms[1]))
-    if abs(correlation) < LEAST_CORRELATION:
-        return None
-    ratio = norms[0] / norms[1]
+    ratio, correlation = likeness
     for other, unit in ratios("s" if name == "time" else unit_of(name)).items():
         if abs(ratio / other - 1) < FACTOR_TOLERANCE:
             return f"wrong units: {name} is {other:g} times what is expected in SI, {unit}?"
