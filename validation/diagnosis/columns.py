@@ -175,7 +175,7 @@ def searches_of(scene: Scene, foreign: Foreign, stepping: Stepping) -> list[Colu
     reading = without_slips(foreign, stepping)
     stepped = reading.scene_of(scene)
     scene_run = ColumnSearch(stepped, reading).scene_run
-    readings = slips(foreign, stepping, scene_run[0], scene_run[-1], furthest=math.inf)
+    readings = slips(foreign, stepping, scene_run[0], scene_run[-1])
     return [ColumnSearch(stepped, reading) for reading in readings]
 
 

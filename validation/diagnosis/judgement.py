@@ -93,10 +93,9 @@ class Case:
         return np.asarray(np.cumsum(self.target.steps)[self.target.rows])
 
     @cached_property
-    def expected(self) -> tuple[Array, Array]:
-        """Displacement [m] and pressure [Pa] of the scene's own run at the recorded rows."""
-        run = histories(self.target.column, [self.scene_variant], self.target.steps)
-        return run.displacement[self.target.rows, 0], run.pressure[self.target.rows, 0]
+    def expected(self) -> Array:
+        """Displacement [m] and pressure [Pa] of the scene's own run at the recorded rows, (2, rows)."""
+        return evidence.shown(self.target, self.scene_variant)
 
     @cached_property
     def stages(self) -> list[Stage]:
@@ -300,8 +299,8 @@ def _answer(case: Case, verdict: Verdict) -> Answer:
     if single_rows:
         stages.insert(1, evidence.single_rows_stage(single_rows))
         departure = evidence.earlier(departure, single_rows)
-    run = histories(target.column, [best.variant], target.steps)
     as_read = case.as_read or reading
+    columns = NAMES[: len(as_read.recorded)]
     stated = v if explained else scene_variant
     answer = Answer(
         causes=found,
@@ -310,13 +309,7 @@ def _answer(case: Case, verdict: Verdict) -> Answer:
         departure=departure,
         notes=(*case.foreign.notes, *reading.notes),
         misfit=best.misfit,
-        curves=curves(
-            case.time,
-            NAMES[: len(as_read.recorded)],
-            as_read.recorded,
-            [each[target.rows] for each in expected],
-            [run.displacement[target.rows, 0], run.pressure[target.rows, 0]],
-        ),
+        curves=curves(case.time, columns, as_read.recorded, expected, evidence.shown(target, best.variant)),
         unexplained=0.0 if verdict.explained else significant(verdict.left, 4),
         alike=alike,
         evidence=tuple(stages),
@@ -374,8 +367,7 @@ def _opened(target: Target, v: Variant) -> list[int]:
 def _diverged(case: Case, growth: float) -> Answer:
     """Return the answer to a history without bounds: no cause beyond that is looked for."""
     target = case.target
-    expected = case.expected[0]
-    first = evidence.unbounded(expected, target.displacement, target.rows)
+    first = evidence.unbounded(case.expected[0], target.displacement, target.rows)
     return Answer(
         scheme=schemes.scheme_numbers(case.scene_variant),
         departure=first,
@@ -383,7 +375,7 @@ def _diverged(case: Case, growth: float) -> Answer:
         sentence=f"Departs from step {first.step} on: the run diverged, by a factor of {growth:.4g} a step; "
         "nothing else can be told from it.",
         notes=(*case.foreign.notes, *case.reading.notes),
-        curves=curves(case.time, NAMES[:1], target.recorded, [expected]),
+        curves=curves(case.time, NAMES[:1], target.recorded, case.expected),
         values={DIVERGED: significant(growth, 6)},
         evidence=(evidence.reading_stage(case.reading),),
     )

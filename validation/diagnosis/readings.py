@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from validation.diagnosis.constants import UNBOUNDED, UNIT_POWERS
+from validation.diagnosis.constants import UNIT_POWERS
 from validation.diagnosis.fits.bar import last_digits
 from validation.diagnosis.reading import FIELDS, Foreign, Stepping, steppings
 from validation.diagnosis.stepping import histories
@@ -136,18 +136,13 @@ def readings_of(scene: Scene, column: Rectangle, scene_variant: Variant, foreign
     return readings
 
 
-def slips(
-    foreign: Foreign, stepping: Stepping, reference: Array, contact: Array, furthest: float = UNBOUNDED
-) -> list[Reading]:
-    """Return the readings without slips of sign and unit, as sizes beside the scene's own history suggest.
-
-    That history counts as unbounded beyond `furthest` times its first row.
-    """
+def slips(foreign: Foreign, stepping: Stepping, reference: Array, contact: Array) -> list[Reading]:
+    """Return the readings without slips of sign and unit, as sizes beside the scene's own history suggest."""
     of_pressure = [(1.0, 1.0)]
     if foreign.pressure is not None and np.any(foreign.pressure):
-        first = _factors(foreign.pressure, contact, furthest)[0]
+        first = _factors(foreign.pressure, contact)[0]
         of_pressure = list(dict.fromkeys([first, (first[0], 1.0), (1.0, 1.0)]))
-    of_displacement = _factors(foreign.displacement, reference, furthest)
+    of_displacement = _factors(foreign.displacement, reference)
     readings = [
         without_slips(foreign, stepping, {DISPLACEMENT: own, PRESSURE: other})
         for own, other in product(of_displacement, of_pressure)
@@ -183,12 +178,11 @@ def without_slips(
     return Reading(stepping, np.array(columns), np.array(units), tuple(corrected))
 
 
-def _factors(values: Array, reference: Array, furthest: float) -> list[tuple[float, float]]:
+def _factors(values: Array, reference: Array) -> list[tuple[float, float]]:
     """Return the sign and the powers of ten by which values may be off, the likeliest first."""
     with np.errstate(all="ignore"):
-        most = furthest * abs(reference[0] or 1.0)
-        bounded = np.clip(np.nan_to_num(reference), -most, most)
-    sign = -1.0 if float(values @ bounded) < 0 else 1.0
+        bounded = np.nan_to_num(reference)
+        sign = -1.0 if float(values @ bounded) < 0 else 1.0
     ratio = math.log10(largest(values) / (largest(bounded) or 1.0) or 1.0)
     near = [10.0**power for power in UNIT_POWERS if abs(ratio - power) < NEAR_POWER]
     return [(turn * sign, factor) for turn in (1.0, -1.0) for factor in (*near, 1.0)]
