@@ -433,7 +433,7 @@ def answer_of(
             stated = verdict.words["scheme"]
         elif "exact-in-time" in words:
             scheme = dict.fromkeys(("alpha", "delta", "gg"))
-            stated = sentences.scheme_words(None, None, None)
+            stated = sentences.EXACT
         else:
             stated = sentences.scheme_of(replace(own, gg=scheme["gg"]))
     horizon = [_horizon(search)] if search.rows < search.scene_run.shape[1] else []

@@ -37,7 +37,6 @@ from validation.diagnosis.search import Verdict, as_it_is, simple, twofold, with
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import OPENING, Flags, Rectangle, Variant, own_variant, rectangle_of
 from validation.errors import InputError
-from validation.metrics.values import largest
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.runs.numbers import remainder_text, significant
 from validation.scenes import features
@@ -67,14 +66,12 @@ class Case:
     @property
     def single_rows(self) -> list[tuple[str, int, float]]:
         """Column, step and error over the largest value of each row that is none of the motion's."""
-        rows: list[tuple[str, int, float]] = []
         if self.left_out is None or self.as_read is None:
-            return rows
-        for column, row in np.argwhere(self.left_out).tolist():
-            mended = self.target.recorded[column]
-            error = abs(float(self.as_read.recorded[column, row] - mended[row])) / largest(mended)
-            rows.append((NAMES[column], int(self.target.rows[row]) + 1, error))
-        return rows
+            return []
+        mended = self.target.recorded
+        errors = np.abs(self.as_read.recorded - mended) / np.max(np.abs(mended), axis=1, keepdims=True)
+        places = np.argwhere(self.left_out).tolist()
+        return [(NAMES[i], int(self.target.rows[row]) + 1, float(errors[i, row])) for i, row in places]
 
     def without_single_rows(self, explanation: Fit) -> Case | None:
         """Return the case without the single rows that stand out of what a fit leaves; None where none do."""
@@ -207,9 +204,8 @@ def judged_block(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
 
 def _beyond(scene: Scene) -> list[str]:
     """Return what `compare` does not take of a scene whose contact opens."""
-    gap, velocity = scene.contact.gap, scene.block.velocity
-    numbers = [f"contact.gap = {gap:g}"] if gap else []
-    numbers += [f"block.velocity = {velocity:g}"] if velocity else []
+    stated = {"contact.gap": scene.contact.gap, "block.velocity": scene.block.velocity}
+    numbers = [f"{key} = {value:g}" for key, value in stated.items() if value]
     others = [name for name in features.of(scene) if name not in OPENING]
     return numbers or others or ["another contact.band"]
 
@@ -261,7 +257,7 @@ def _answer(case: Case, verdict: Verdict) -> Answer:
     ids = [*reading.slips, *found]
     either = families.sign_or_gravity(target, ids, reading.corrected) if verdict.explained else []
     explained = verdict.explained and not either
-    v = _told_apart(target, best.variant) if explained else best.variant
+    v, undecided = _told_apart(target, best.variant) if explained else (best.variant, {})
     values = causes.values_of(target.column, found, v)
     alike = either or families.as_good(target, verdict)
     words: dict[str, str] = {}
@@ -275,13 +271,12 @@ def _answer(case: Case, verdict: Verdict) -> Answer:
         if single_rows:
             values[SINGLE_ROWS] = min(step for _, step, _ in single_rows)
         alike = alike or families.relatives(target, scene_variant, verdict, ids, v)
-        more = {"scheme": sentences.scheme_of(scene_variant), "rows": evidence.words_of_rows(single_rows)}
+        more = undecided | {"scheme": sentences.scheme_of(scene_variant), "rows": evidence.words_of_rows(single_rows)}
         if steps:
             more["open_steps"] = f" in steps {sentences.span(steps)}"
         for name, (low, high) in between.items():
             unit = "m" if name == "dead-band" else "Pa"
             more["between"] = f" ({low:.3g} to {high:.3g} {unit} give the same rows)"
-        more |= _undecided(target, v, found)
         words = {name: causes.words_of(name, values.get(name, 0.0), v, scene_variant, **more) for name in found}
         of_scheme = ("alpha", "delta", "gg") if v.family == "newmark" else ("gg",)
         refitted = fit_one(target, v, tuple(dict.fromkeys((*of_scheme, *best.free))))
@@ -319,42 +314,29 @@ def _answer(case: Case, verdict: Verdict) -> Answer:
     return finished(answer, reading, explained, words, sentences.scheme_of(stated) + others)
 
 
-def _undecided(target: Target, v: Variant, ids: Sequence[str]) -> dict[str, str]:
-    """Return the words for what the rows may leave open: the split of a scheme, the form of a contact's force."""
+def _told_apart(target: Target, v: Variant) -> tuple[Variant, dict[str, str]]:
+    """Return the usual one of variants that give the same rows, and in words what these leave open.
+
+    That is the smaller split of a composite scheme, a dashpot that is clipped, and the form of a contact's force.
+    """
     words = {}
     if v.family == "composite":
+        first, other = sorted((schemes.split_of(v), schemes.companion_split(v)))
         words["split"] = f"split {schemes.split_of(v):.4g}"
-        if _has_second_split(target, v):
-            other = f" or {schemes.companion_split(v):.4g}, which give the same rows while contact stays closed"
-            words["split"] += other
-    if "contact-dashpot" in ids and v.opens:
+        if other - first >= SAME_NUMBER and explains(target, replace(v, split=schemes.companion_split(v))):
+            words["split"] = f"split {first:.4g} or {other:.4g}, which give the same rows while contact stays closed"
+            v = replace(v, split=first)
+    if v.contact == "dashpot":
         words["clipping"] = ", clipped" if v.clipped else ", not clipped: it pulls before the contact opens"
         if explains(target, replace(v, clipped=not v.clipped)):
-            words["clipping"] = "; these rows do not tell whether it is clipped"
+            words["clipping"] = "; these rows do not tell whether it is clipped" if v.opens else ""
+            v = replace(v, clipped=True)
     if v.opens and schemes.stages(v)[-1].af > 0:
         is_of_gaps = v.contact == "mean gap"
         if not explains(target, replace(v, contact="springs" if is_of_gaps else "mean gap")):
             of = "that of the mean gap" if is_of_gaps else "the mean of those at both ends"
             words["form"] = f", the contact force {of}"
-    return words
-
-
-def _has_second_split(target: Target, v: Variant) -> bool:
-    """Whether a composite scheme gives the same rows with another split."""
-    other = schemes.companion_split(v)
-    if abs(other - schemes.split_of(v)) < SAME_NUMBER:
-        return False
-    return explains(target, replace(v, split=other))
-
-
-def _told_apart(target: Target, v: Variant) -> Variant:
-    """Return the usual one of two variants that give the same rows: the smaller split, the clipped dashpot."""
-    if v.family == "composite" and _has_second_split(target, v):
-        return replace(v, split=min(schemes.split_of(v), schemes.companion_split(v)))
-    if v.contact == "dashpot" and not v.clipped:
-        clipped = replace(v, clipped=True)
-        return clipped if explains(target, clipped) else v
-    return v
+    return v, words
 
 
 def _opened(target: Target, v: Variant) -> list[int]:

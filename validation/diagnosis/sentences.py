@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -10,11 +11,11 @@ from validation.diagnosis.schemes import EXPLICIT, FAMILIES, split_of
 from validation.diagnosis.variant import Variant
 from validation.runs.numbers import ROUNDING
 
+EXACT = "exact in time"
 
-def scheme_words(alpha: float | None, delta: float | None, gg: float | None) -> str:
+
+def scheme_words(alpha: float, delta: float, gg: float) -> str:
     """Return a scheme by name and numbers."""
-    if alpha is None or delta is None or gg is None:
-        return "exact in time"
     numbers = f"alpha = {alpha:.4g}, delta = {delta:.4g}, gg = {gg:.5g}"
     name = named(alpha, delta)
     return f"{name} ({numbers})" if name else f"an unnamed scheme ({numbers})"
@@ -23,7 +24,7 @@ def scheme_words(alpha: float | None, delta: float | None, gg: float | None) -> 
 def scheme_of(v: Variant) -> str:
     """Return the scheme of a variant by name and numbers."""
     if v.exact:
-        return "exact in time"
+        return EXACT
     if v.family == "newmark":
         return scheme_words(v.alpha, v.delta, v.gg)
     if v.contact == "impact":
@@ -40,13 +41,9 @@ def scheme_of(v: Variant) -> str:
 
 def span(steps: Sequence[int]) -> str:
     """Return steps as runs, ``1-5, 84-100``."""
-    runs: list[list[int]] = []
-    for step in steps:
-        if runs and step == runs[-1][1] + 1:
-            runs[-1][1] = step
-        else:
-            runs.append([step, step])
-    return ", ".join(str(a) if a == b else f"{a}-{b}" for a, b in runs)
+    numbered = itertools.groupby(enumerate(steps), lambda one: one[1] - one[0])
+    runs = [[step for _, step in run] for _, run in numbered]
+    return ", ".join(f"{run[0]}-{run[-1]}" if len(run) > 1 else str(run[0]) for run in runs)
 
 
 def told_lines(determined: Mapping[str, Interval], untold: Sequence[Mapping[str, float]]) -> list[str]:
@@ -58,14 +55,10 @@ def told_lines(determined: Mapping[str, Interval], untold: Sequence[Mapping[str,
     ]
 
 
-def cleaned(value: float) -> float:
-    """Return a number, zero where it is rounding."""
-    return value if abs(value) > ROUNDING else 0.0
-
-
 def _fitted(interval: Interval) -> str:
+    value = interval.value if abs(interval.value) > ROUNDING else 0.0
     width = f"+- {interval.half_width:.2g}" if interval.half_width > ROUNDING else f"+- less than {ROUNDING:g}"
-    return f"{cleaned(interval.value):.7g} {width}"
+    return f"{value:.7g} {width}"
 
 
 def listed(parts: Sequence[str]) -> str:
