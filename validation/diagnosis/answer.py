@@ -68,7 +68,7 @@ def finished(
         if causes and all_benign(causes):
             answer = replace(answer, evidence=tuple(surrounded(stage) for stage in answer.evidence))
     else:
-        nearest = {"causes": causes, "values": answer.values, "left": answer.unexplained}
+        nearest = {"causes": causes, "values": answer.values}
         is_near = causes and not answer.alike
         answer = replace(answer, causes=[UNEXPLAINED], values={}, nearest=nearest if is_near else None)
     words = {**words, **words_of_slips(reading.corrected)}

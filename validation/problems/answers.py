@@ -24,10 +24,10 @@ from validation.problems.problem import names as names_of_pack
 from validation.problems.stated import Document, checked, read_document
 from validation.runs.defects import Defects, Place
 from validation.runs.files import atomic_directory
-from validation.runs.history import PRESSURE, History
+from validation.runs.history import History
 from validation.runs.progress import Progress
 from validation.scenes.unknown import did_you_mean
-from validation.solvers.foreign import factor, force
+from validation.solvers.foreign import differences
 from validation.solvers.history_table import AS_NAMED, HeaderNames, read_table
 
 FILE = "submission.json"
@@ -330,16 +330,8 @@ def _differences(history: History, posed: Problem) -> Iterator[tuple[str, str]]:
     if other_units is not None:
         yield from other_units
         return
-    exact = standard(posed).exact
-    for column, values in history.columns.items():
-        if column not in exact.columns:
-            continue
-        rows = len(exact.time)
-        difference = factor(column, values[:rows], exact.columns[column])
-        if difference is None and column == PRESSURE:
-            difference = force(posed.scene, history, exact)
-        if difference is not None:
-            yield column, difference.replace(column, "it", 1)
+    for column, difference in differences(posed.scene, history, standard(posed).exact):
+        yield column, difference.replace(column, "it", 1)
 
 
 # ---- keeping ----

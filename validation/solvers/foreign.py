@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -52,7 +53,10 @@ def run_of_columns(scene: Scene, columns: dict[str, Array]) -> Run:
     notes: tuple[str, ...] = ()
     if all(np.isfinite(values).all() for values in (history.time, *columns.values())):
         reference = _reference(scene)
-        if wrong := _wrong_units(scene, history, expected, reference):
+        wrong = _factor("time", history.time, expected)
+        if wrong is None and reference is not None:
+            wrong = next((words for _, words in differences(scene, history, reference)), None)
+        if wrong is not None:
             return Run(Outcome.WRONG_UNITS, history, notes=(wrong,))
         if reference is not None and is_identical(history, reference):
             notes = (f"{SAME_AS}{DDA.name}",)
@@ -63,24 +67,24 @@ def run_of_columns(scene: Scene, columns: dict[str, Array]) -> Run:
     return Run(Outcome.COMPLETED, history, work, notes=(*notes, *tension_note(history)))
 
 
-def _wrong_units(scene: Scene, history: History, expected: Array, reference: History | None) -> str | None:
-    """Name the first column that is the built-in solution in another unit or with another sign."""
-    if (difference := factor("time", history.time, expected)) is not None:
-        return difference
+def differences(scene: Scene, history: History, reference: History) -> Iterator[tuple[str, str]]:
+    """Yield the columns that are those of a reference, or begin where they do, in another unit or of another sign."""
     for name, values in history.columns.items():
-        if reference is not None and name in OF_BLOCK and name in reference.columns:
-            expected_values = reference.columns[name]
-            if np.isfinite(expected_values).all() and (difference := factor(name, values, expected_values)) is not None:
-                return difference
-    return None if reference is None else force(scene, history, reference)
+        if name not in reference.columns:
+            continue
+        difference = _factor(name, values[: len(reference.time)], reference.columns[name])
+        if difference is None and name == PRESSURE:
+            difference = _force(scene, history, reference)
+        if difference is not None:
+            yield name, difference
 
 
-def force(scene: Scene, history: History, reference: History) -> str | None:
+def _force(scene: Scene, history: History, reference: History) -> str | None:
     """Say that the pressure is a force, if it is larger by the length of the base and the motion is as expected.
 
     With one spring in place of two, pressure and gap are larger by two: no force on a base of 2 m.
     """
-    if DISPLACEMENT not in history.columns or PRESSURE not in history.columns or PRESSURE not in reference.columns:
+    if DISPLACEMENT not in history.columns.keys() & reference.columns.keys():
         return None
     expected = reference.columns[DISPLACEMENT]
     size = norm(expected)
@@ -114,7 +118,7 @@ def _reference(scene: Scene) -> History | None:
         return None
 
 
-def factor(name: str, values: Array, expected: Array) -> str | None:
+def _factor(name: str, values: Array, expected: Array) -> str | None:
     """Say by which known factor a column differs from what is expected, if by one."""
     likeness = _likeness(values, expected)
     if likeness is None or abs(likeness[1]) < LEAST_CORRELATION:
