@@ -61,7 +61,7 @@ def changes_of(scene):
     for change in of_scene(scene, (1.0, 0.7)):
         number = change.value(-0.2)
         yield change.id, "none" if np.isnan(number) else number, change.starts, change.changed(-0.2)
-    yield hooks.accurate(scene), hooks.rivals(scene)
+    yield hooks.accurate(scene)
 
 
 def moves_of(rectangle, variant, steps, columns):

@@ -70,7 +70,7 @@ def test_the_example_of_ntdda():
     )
     assert example["causes"] == ["base-compliance", "own-weight", "geometry-updated"]
     assert set(example["values"]) == set(example["intervals"]) == {"base-compliance", "own-weight"}
-    assert len(example["evidence"]) == 6
+    assert len(example["evidence"]) == 5
     assert example["scheme"] == {"alpha": 0.5, "delta": 1.0, "gg": 1.0}
     # the number stands in the example's README
     assert example["values"]["base-compliance"] == pytest.approx(0.0015, abs=1e-4)

@@ -11,6 +11,7 @@ from validation.diagnosis import judgement, search
 from validation.diagnosis.causes import band_interval
 from validation.diagnosis.fits.fit import fit_one
 from validation.diagnosis.fits.target import Target
+from validation.diagnosis.judgement import _told_apart as told_apart
 from validation.diagnosis.moves import Move
 from validation.diagnosis.schemes import companion_split
 from validation.diagnosis.search import Explanation, Verdict, simple, twofold, with_same_rows
@@ -112,26 +113,24 @@ def test_two_variants_are_one_program_at_every_step():
 def test_what_the_rows_leave_open_of_a_scheme_is_told_by_its_usual_form():
     scheme = replace(OWN, family="composite", split=0.7, spectral=0.3, start="consistent")
     other = companion_split(scheme)
-    target = target_of(scheme)
-    assert judgement._told_apart(target, scheme).split == pytest.approx(min(0.7, other))
-    words = judgement._undecided(target, scheme, ["composite"])["split"]
-    assert "0.7" in words and f"{other:.4g}" in words
+    usual, words = told_apart(target_of(scheme), scheme)
+    assert usual.split == pytest.approx(min(0.7, other))
+    assert "0.7" in words["split"] and f"{other:.4g}" in words["split"]
     opens = replace(scheme, opens=True)
-    assert judgement._told_apart(target_of(opens), opens).split == 0.7
+    assert told_apart(target_of(opens), opens)[0].split == 0.7
     usual = replace(scheme, split=0.0)
-    assert " or " not in judgement._undecided(target_of(usual), usual, ["composite"])["split"]
+    assert " or " not in told_apart(target_of(usual), usual)[1]["split"]
     dashpot = replace(OWN, contact="dashpot", dashpot=0.4, clipped=False, opens=True, **AVERAGE)
     pulling = target_of(dashpot, block=STIFF, steps=np.full(60, 2e-4))
-    assert not judgement._told_apart(pulling, dashpot).clipped
     held = replace(dashpot, opens=False)
-    assert judgement._told_apart(target_of(held), held).clipped
-    told_clipped = judgement._undecided(pulling, dashpot, ["contact-dashpot"])["clipping"]
-    assert told_clipped != judgement._undecided(target_of(dashpot), dashpot, ["contact-dashpot"])["clipping"]
+    assert told_apart(target_of(held), held)[0].clipped
+    not_clipped, words = told_apart(pulling, dashpot)
+    assert not not_clipped.clipped and words != told_apart(target_of(dashpot), dashpot)[1]
     gaps = replace(OWN, family="hht", spectral=0.2, contact="mean gap", opens=True)
-    assert "form" in judgement._undecided(target_of(gaps), gaps, ["hht"])
+    assert "form" in told_apart(target_of(gaps), gaps)[1]
     locked = replace(gaps, opens=False, contact="springs")
-    assert "form" not in judgement._undecided(target_of(gaps), locked, ["hht"])
-    assert judgement._undecided(target_of(OWN), OWN, ["gg"]) == {}
+    assert "form" not in told_apart(target_of(gaps), locked)[1]
+    assert told_apart(target_of(OWN), OWN) == (OWN, {})
 
 
 READINGS = [  # errors corrected in each of two readings, whether it is explained, what is left; the one that is taken

@@ -179,7 +179,7 @@ LAYERS_THROUGH = Seam(layers, layers.through)
 
 # The suite itself
 RIVAL_SLIPS = Seam(other_solvers, other_solvers.CANDIDATES)
-READING_NUMBERS = Seam(reading, reading._numbers)
+READING_COLUMNS = Seam(reading, reading.columns_of)
 PROBLEM_RUNS = Seam(models, models.run_of)
 ORIGIN = Seam(origin, origin._here)
 IMPORTED_SOLVER = Seam(registry, registry._imported)

@@ -183,6 +183,7 @@ UNEQUAL = {  # where a list may end before the one beside it
     "fem_reference/exact/sliding_block.py",
     "fem_reference/plane/contact.py",
     "validation/advice/plain.py",
+    "validation/diagnosis/answer.py",
     "validation/diagnosis/beside.py",
     "validation/diagnosis/evidence.py",
     "validation/diagnosis/judgement.py",

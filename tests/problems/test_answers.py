@@ -190,7 +190,7 @@ def scaled(column, factor):
 @pytest.mark.parametrize(
     ("change", "place", "field", "value"),
     [
-        (lambda r: [[*r[0][:2], "speed"], *r[1:]], ":1:23", "header", "'speed'"),
+        (lambda r: [[*r[0][:2], "speed"], *r[1:]], ":1:28", "header", "time_s, displacement_m, speed"),
         (lambda r: [[*row, row[1]] for row in r], ":1:43", "header", None),
         (lambda r: r[1:], ":1:1", "header", "numbers"),
         (lambda r: [r[0], *([repr(float(row[0]) + 1e-3), *row[1:]] for row in r[1:])], ":2:1", "time", "0.003"),

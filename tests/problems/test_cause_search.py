@@ -279,7 +279,7 @@ def test_a_solver_that_does_not_run_to_its_end_has_no_history(monkeypatch):
 
 def test_compare_is_asked_where_it_can_look(monkeypatch):
     monkeypatch.undo()
-    answer = Answer("SENTENCE", ["gg"], {}, None, values={"gg": 0.9}, misfit=0.3)
+    answer = Answer(sentence="SENTENCE", causes=["gg"], scheme={}, departure=None, values={"gg": 0.9}, misfit=0.3)
     asked = []
 
     def given(**fields):

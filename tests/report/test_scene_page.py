@@ -76,9 +76,9 @@ def test_what_damping_removed_is_told_by_its_parts(kept):
 
 def test_the_nearest_explanation_is_told_where_it_has_a_cause():
     answer = SimpleNamespace(causes=(), nearest=None, unexplained=0.0371, alike=[], departure=None, opened=(3, 17))
-    for causes in ([], ["gg", "start"]):
-        answer.nearest = {"causes": causes}
-        assert _facts(answer)[0].rows[:-1] == (("nearest", "gg, start: 3.7 % left"),) * bool(causes)
+    for nearest in (None, {"causes": ["gg", "start"], "values": {}}):
+        answer.nearest = nearest
+        assert _facts(answer)[0].rows[:-1] == (("nearest", "gg and start: 3.7 % left"),) * bool(nearest)
 
 
 def test_few_swings_and_driven_motions_show_all():

@@ -109,7 +109,7 @@ def test_a_table_of_a_history_is_read_or_its_defect_has_a_place():
         table = read_table(Path("x"), 0.001 * np.arange(1, 4), COLUMNS, ["displacement"], defects, text=text)
         if place is None:
             assert table.history.displacement.tolist() == [1.0, 2.0, 3.0] and not len(defects)
-            assert [*table.header] == ["displacement"]
+            assert [*table.header] == ["time", "displacement"]
             continue
         assert table is None and (place == "blank") is (not len(defects)), text
         if place != "blank":

@@ -113,6 +113,13 @@ FullOption = Annotated[
 RanksOption = Annotated[
     int, typer.Option("--ranks", help="MPI ranks of the solvers that can be distributed (fenicsx).", min=1, metavar="N")
 ]
+ColumnsOption = Annotated[
+    str | None, typer.Option(help="Column names or numbers in a table.", metavar="time=T,displacement=UY")
+]
+ScaleOption = Annotated[
+    str | None,
+    typer.Option(help="Factors that convert its values to SI, upwards positive.", metavar="displacement=-1e-3"),
+]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print plain data instead of text.")]
 SummaryOption = Annotated[
     Path | None,

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from validation.cli.app import JsonOption, SetOption, _progress, app, one_case, writable_pdf
+from validation.cli.app import ColumnsOption, JsonOption, ScaleOption, SetOption, _progress, app, one_case, writable_pdf
 from validation.cli.printing.output import echo_answer
 
 if TYPE_CHECKING:
@@ -21,16 +21,8 @@ def compare(
     history: Annotated[
         Path, typer.Argument(help="The history: a table under a header, or a measured-point file of ntdda (.m).")
     ],
-    columns: Annotated[
-        str | None,
-        typer.Option(help="Column names or numbers in the file.", metavar="time=T,displacement=UY"),
-    ] = None,
-    scale: Annotated[
-        str | None,
-        typer.Option(
-            help="Factors that convert the file's values to SI, upwards positive.", metavar="displacement=-1e-3"
-        ),
-    ] = None,
+    columns: ColumnsOption = None,
+    scale: ScaleOption = None,
     tolerance: Annotated[
         float, typer.Option(help="Relative difference (L2) up to which a column counts as the same.", min=0.0, max=1.0)
     ] = 0.0,
@@ -57,13 +49,14 @@ def compare(
     """
     from validation.diagnosis.hooks import DiagnosisHooks
     from validation.diagnosis.judgement import compare as judge
-    from validation.diagnosis.reading import parse_columns, parse_scale, read
+    from validation.diagnosis.reading import OURS, read
     from validation.runs.files import check_ending
+    from validation.solvers.history_table import HeaderNames
 
     check_ending(figure, "--figure")
     case = one_case(scene, assignments)
     DiagnosisHooks.of(case).check(case)  # before its file is taken for a wrong one
-    foreign = read(history, parse_columns(columns), parse_scale(scale))
+    foreign = read(history, HeaderNames.typed(columns, scale, OURS))
     with _progress("compare"):
         answer = judge(case, foreign, tolerance)
     if report is not None:
@@ -80,15 +73,10 @@ def compare(
         raise typer.Exit(1)
 
 
-def _listed(alternative: dict[str, Any]) -> str:
-    values = alternative["values"]
-    return " and ".join(f"{name} {values[name]:.5g}" if name in values else name for name in alternative["causes"])
-
-
 def _lines(answer: Answer) -> Iterator[str]:
     """Yield the sentence first, then what it rests on."""
     from validation.diagnosis.causes import CAUSES
-    from validation.diagnosis.sentences import told_lines
+    from validation.diagnosis.sentences import family, told_lines
 
     yield answer.sentence
     if answer.remedy:
@@ -101,7 +89,7 @@ def _lines(answer: Answer) -> Iterator[str]:
             yield f"  {name:<18} {number:>10}  {CAUSES[name].words}"
     for alternative in answer.alike:
         further = alternative["further_scene"]
-        yield f"\n{_listed(alternative)} would give the same history here; to tell them apart, try {further}"
+        yield f"\n{family(alternative)} would give the same history here; to tell them apart, try {further}"
     if answer.evidence:
         yield "\nevidence"
         for stage in answer.evidence:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-import itertools
 import sys
 import warnings
 from collections.abc import Callable
@@ -49,22 +48,19 @@ COMMANDS = (
     waves,
     work,
 )  # importing them declares their commands
-GROUPS = {  # of the help, each with its commands, in their order
-    "Scenes and runs": ("new", "list", "show", "run", "solve"),
-    "Results": ("report", "rows", "claims", "verify", "diff"),
-    "Your own code or program": ("judge", "compare", "export-pack"),
-    "Time step, springs and damping": ("advise",),
+GROUPS = {  # of the help, each with its commands in their order, and their pages of the documentation
+    "Scenes and runs": dict.fromkeys(("new", "list", "show", "run", "solve"), "tutorial.md"),
+    "Results": {
+        **dict.fromkeys(("report", "rows"), "gallery.md"),
+        "claims": "claims.md",
+        "verify": "verification.md",
+        "diff": "ci.md",
+    },
+    "Your own code or program": {"judge": "judge.md", "compare": "judge.md", "export-pack": "judge.md"},
+    "Time step, springs and damping": {"advise": "choose.md"},
 }
-PAGES = {  # of the documentation, each with the commands that it is about
-    "tutorial.md": ("new", "list", "show", "run", "solve"),
-    "gallery.md": ("report", "rows"),
-    "claims.md": ("claims",),
-    "verification.md": ("verify",),
-    "ci.md": ("diff",),
-    "judge.md": ("judge", "compare", "export-pack"),
-    "choose.md": ("advise",),
-}
-ORDER = list(itertools.chain.from_iterable(GROUPS.values()))
+PAGES = {name: page for pages in GROUPS.values() for name, page in pages.items()}
+ORDER = list(PAGES)
 OUT_OF_RANGE = (
     "the numbers leave the range of double precision; a value of the scene or an option is far too large or too small"
 )
@@ -73,7 +69,7 @@ USAGE_ERROR: type[Exception] = typer.BadParameter.__mro__[1]  # typer exports no
 
 def page_of(name: str) -> Path:
     """Return the page of a command: of the checkout, or where the wheel has put it below its environment."""
-    page = next(page for page, names in PAGES.items() if name in names)
+    page = PAGES[name]
     packages = Path(__file__).resolve().parents[2]
     installed = [folder / "share/doc/dda-validation" for folder in packages.parents]
     folders = (packages / "docs", packages / "share/doc/dda-validation", *installed)

@@ -14,7 +14,9 @@ from validation.cli.app import (
     BAD_INPUT,
     GATE_FAILED,
     NUMERICAL_FAILURE,
+    ColumnsOption,
     JsonOption,
+    ScaleOption,
     SetOption,
     _progress,
     app,
@@ -81,14 +83,8 @@ def judge(
         list[str] | None,
         typer.Option("--require", help="Fail with status 3 if this solver gives no answer at all.", metavar="NAME"),
     ] = None,
-    columns: Annotated[
-        str | None,
-        typer.Option(help="What a table calls its columns.", metavar="time=T,displacement=UY"),
-    ] = None,
-    scale: Annotated[
-        str | None,
-        typer.Option(help="Factors that convert its values to SI, upwards positive.", metavar="displacement=-1e-3"),
-    ] = None,
+    columns: ColumnsOption = None,
+    scale: ScaleOption = None,
     assignments: SetOption = None,
     verbose: Annotated[bool, typer.Option("--verbose", "-v", help="List all failing gates.")] = False,
     as_json: JsonOption = False,
@@ -166,7 +162,6 @@ def _answers(
     """Return what one source answers; `header` is what tables call columns, and factors of them."""
     from validation.problems import answers
     from validation.problems.problem import names, problem
-    from validation.runs.units import factors_of, theirs_of
     from validation.solvers.history_table import HeaderNames
     from validation.solvers.registry import is_program, is_solver, solver_names
     from validation.suite.judging import answers_of
@@ -182,9 +177,7 @@ def _answers(
         answered = (name for name in names() if (place / f"{name}{answers.TABLE}").exists())
         asked = problems or list(map(problem, answered))  # to pose them all takes a second
         ours = list(dict.fromkeys(["time", *(column for posed in asked for column in posed.columns)]))
-        theirs, factors = header
-        names_of_tables = HeaderNames(theirs_of(theirs, ours), factors_of(factors, ours))
-        return [answers.read_tables(place, asked, names_of_tables)]
+        return [answers.read_tables(place, asked, HeaderNames.typed(*header, ours))]
     rule = "must be a solver, module:attribute, ./program, a file of a history or a directory of answers"
     raise InputError(rule, field="SOLVER", value=repr(source), advice=answers.EXPORT)
 

@@ -22,8 +22,8 @@ from typing import Any, ClassVar, TypeVar
 import numpy as np
 
 from validation.diagnosis import evidence, sentences
-from validation.diagnosis.answer import Answer
-from validation.diagnosis.causes import CAUSES, UNEXPLAINED, all_benign
+from validation.diagnosis.answer import Answer, curves, finished
+from validation.diagnosis.causes import CAUSES, all_benign
 from validation.diagnosis.constants import (
     ARITHMETIC,
     CLEARLY,
@@ -40,13 +40,13 @@ from validation.diagnosis.fits.bar import last_digits, norm, outlying, spread_of
 from validation.diagnosis.numbers import CandidateChange, Values
 from validation.diagnosis.one_change import STARTS, Fitted, fitted, nearest, of_scene, run_of
 from validation.diagnosis.reading import Foreign, steppings
-from validation.diagnosis.readings import Reading, slips, without_slips, words_of_slips
+from validation.diagnosis.readings import Reading, slips, without_slips
 from validation.diagnosis.schemes import scheme_numbers
 from validation.diagnosis.variant import own_scheme
 from validation.errors import InputError
 from validation.metrics.contact import AGREED, SHIFT
 from validation.metrics.values import largest
-from validation.runs.history import PRESSURE, Array
+from validation.runs.history import Array
 from validation.runs.numbers import ROUNDING, significant
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Role, Solver
@@ -311,7 +311,7 @@ def searches_of(scene: Scene, foreign: Foreign, search: Callable[[Scene, Reading
     for stepping in steppings(foreign, scene.time.step):
         if np.ptp(stepping.steps) == 0:
             run = search(scene, without_slips(foreign, stepping)).scene_run
-            read = slips(foreign, stepping, run[0], run[-1], furthest=math.inf)
+            read = slips(foreign, stepping, run[0], run[-1])
             searches += [search(scene, reading) for reading in read]
     if not searches:
         raise InputError("the times of the history are not uniform, which this scene needs", source=scene.name)
@@ -361,59 +361,36 @@ def answer_of(foreign: Foreign, verdict: RunVerdict, more_stages: Sequence[Stage
     search = verdict.search
     reading = search.reading
     explained = verdict.explained
-    columns = verdict.columns
-    scene_misfit, misfit = (math.hypot(*search.misfits(run)) for run in (search.scene_run, columns))
-    unexplained = 0.0 if explained else significant(min(misfit / scene_misfit, 1.0) if scene_misfit else 1.0, 4)
-    ids = [*reading.slips, *verdict.causes] if explained else [UNEXPLAINED]
-    departure = None if all_benign(ids) else search.departure(verdict)
+    scene_misfit, misfit = (math.hypot(*search.misfits(run)) for run in (search.scene_run, verdict.columns))
     of_time = {key: value for key, value in verdict.best.items() if explained and key.startswith("time.")}
     scheme_of_best = own_scheme(search.scene.with_values(of_time))
     scheme = scheme_numbers(scheme_of_best)
     stated = sentences.scheme_of(scheme_of_best)
-    values = {name: significant(value, 6) for name, value in verdict.causes.items() if value is not None}
-    words = words_of_slips(reading.corrected)
-    if explained:
-        words |= {name: verdict.words[name] for name in verdict.causes}
-        if "scheme" in verdict.causes:
-            stated = words["scheme"]
-            words["scheme"] = f"a different scheme from the scene's {sentences.scheme_of(own_scheme(search.scene))}"
-        elif "exact-in-time" in verdict.causes:
-            scheme = dict.fromkeys(scheme)
-            stated = sentences.scheme_words(None, None, None)
-    nearest_causes: dict[str, Any] | None = None
-    if not explained and not verdict.alike and verdict.causes:
-        nearest_causes = {"causes": list(verdict.causes), "values": values, "left": unexplained}
-    stages = [*_stages(search), *more_stages]
-    if explained and ids and all_benign(ids):
-        stages = [evidence.surrounded(stage) for stage in stages]
-    subject = sentences.Subject(
-        stated, words, departure, sentences.remaining(misfit), verdict.alike, search.model_words
-    )
-    if explained:
-        sentence = sentences.sentence(subject)
-    else:
-        sentence = sentences.not_explained(subject, nearest_causes, unexplained, stages)[:-1]
-        sentence = f"{sentence}; {_first_rows(search)}."
-    (judged_solver, *_) = by_role(Role.JUDGED)
-    curves = {"the file": search.recorded, judged_solver: search.scene_run, "best": columns}
-    has_pressure = PRESSURE in search.NAMES[: len(columns)]
-    return Answer(
-        sentence=sentence,
-        causes=ids,
+    words = dict(verdict.words)
+    if explained and "scheme" in words:
+        stated = words["scheme"]
+        words["scheme"] = f"a different scheme from the scene's {sentences.scheme_of(own_scheme(search.scene))}"
+    elif explained and "exact-in-time" in words:
+        scheme = dict.fromkeys(scheme)
+        stated = sentences.EXACT
+    is_fault = not (explained and all_benign([*reading.slips, *verdict.causes]))
+    answer = Answer(
+        causes=list(verdict.causes),
+        values={name: significant(value, 6) for name, value in verdict.causes.items() if value is not None},
         scheme=scheme,
-        departure=departure,
+        departure=search.departure(verdict) if is_fault else None,
         notes=(*foreign.notes, *reading.notes, *search.notes),
         misfit=misfit,
-        curves={name: (search.time, run[0]) for name, run in curves.items()},
-        values=values if explained else {},
-        unexplained=unexplained,
-        nearest=nearest_causes,
+        curves=curves(search.time, search.NAMES, search.recorded, search.scene_run, verdict.columns),
+        unexplained=0.0 if explained else significant(min(misfit / scene_misfit, 1.0) if scene_misfit else 1.0, 4),
         alike=[dict(one) for one in verdict.alike],
-        evidence=tuple(stages),
-        pressures={name: run[1] for name, run in curves.items()} if has_pressure else {},
-        slips=reading.corrected if explained else (),
+        evidence=(*_stages(search), *more_stages),
         model=search.model,
     )
+    answer = finished(answer, reading, explained, words, stated, search.model_words)
+    if explained:
+        return answer
+    return replace(answer, sentence=f"{answer.sentence[:-1]}; {_first_rows(search)}.")
 
 
 def _first_rows(search: SceneSearch) -> str:

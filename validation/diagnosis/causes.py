@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import math
 import tomllib
+from collections import defaultdict
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from validation.diagnosis.constants import SAME_NUMBER, SEEN
 from validation.diagnosis.fits.fit import SPAN, Fit, changed, fit, fit_one, intervals
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.moves import FINE_BANDS
-from validation.diagnosis.schemes import split_of
 from validation.diagnosis.variant import Rectangle, Variant
 from validation.metrics.contact import AGREED
 from validation.runs.numbers import significant
@@ -142,13 +143,11 @@ def intervals_of(target: Target, explanation: Fit, ids: Sequence[str]) -> dict[s
     for name, interval in intervals(explanation).items():
         if not math.isfinite(interval.half_width):
             continue
-
-        def moved(by: float, name: str = name, value: float = interval.value) -> dict[str, float]:
-            return values_of(target.column, ids, changed(explanation.variant, {name: value + by}))
-
-        low = moved(-interval.half_width)
-        high = moved(interval.half_width)
-        elsewhere = moved(SPAN[name])  # an exact fit has no width, and still belongs to its value
+        low, high, elsewhere = (
+            values_of(target.column, ids, changed(explanation.variant, {name: interval.value + by}))
+            # an exact fit has no width, and still belongs to its value
+            for by in (-interval.half_width, interval.half_width, SPAN[name])
+        )
         for cause, value in values.items():
             if elsewhere[cause] != value:
                 ends[cause] = (min(low[cause], high[cause]), max(low[cause], high[cause]))
@@ -157,7 +156,7 @@ def intervals_of(target: Target, explanation: Fit, ids: Sequence[str]) -> dict[s
     return ends
 
 
-def band_interval(target: Target, variant: Variant, cause: str = "dead-band") -> tuple[float, float]:
+def band_interval(target: Target, variant: Variant, cause: str) -> tuple[float, float]:
     """Return the penetrations, or tensions, that give the same rows: a limit lies between two that happened."""
     least = fit_one(target, variant).misfit
     field = BAND_FIELDS[cause]
@@ -199,22 +198,14 @@ def words_of(name: str, value: float, v: Variant | None = None, scene: Variant |
     `further` is what else a sentence holds: the scene's `scheme`, `open_steps`, `between`.
     """
     cause = CAUSES[name]
-    words = {
+    words: dict[str, Any] = {
         "words": cause.words,
         "lateness": _lateness(value),
         "gravity": {0.0: "is missing", -1.0: "acts upwards"}.get(value, f"is {value:.5g} times the scene's"),
         "lacking": "is missing" if value == 0 else "has the wrong sign",
         "rho_inf": (1 - value) / (1 + value) if value > -1 else math.nan,
         "implicit_euler": ": implicit Euler" if value == 1 else "",
-        "form": "",
-        "split": "",
-        "clipping": "",
         "twelfth": {3.0: ", of a mass in the corners", 12.0: ", without its twelfth"}.get(round(value, 3), ""),
-        "scheme": "",
-        "open_steps": "",
-        "between": "",
-        "rows": "",
-        "interchanged": "",
     }
     if v is not None and scene is not None:
         squared = scene.gg < 1 and abs(v.gg - scene.gg**2) < AGREED
@@ -224,9 +215,9 @@ def words_of(name: str, value: float, v: Variant | None = None, scene: Variant |
             "interchanged": INTERCHANGED if _is_interchanged(v, scene) else "",
             "place": {1.0: ", the top edge", -1.0: ", the base"}.get(round(v.point, 6), ""),
             "carried": "force of the springs" if v.kept == "springs" else "stress",
-            "split": f"split {split_of(v):.4g}",
         }
-    return cause.sentence.format(value=value, per_cent=100 * value, v=v, scene=scene, **(words | further))
+    numbers = {"value": value, "per_cent": 100 * value, "v": v, "scene": scene}
+    return cause.sentence.format_map(defaultdict(str, words | further | numbers))
 
 
 def _is_interchanged(v: Variant, scene: Variant) -> bool:

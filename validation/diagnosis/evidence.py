@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
@@ -37,21 +37,25 @@ class Departure:
     kind: Kind
 
 
-def expected(target: Target, explanation: Fit, scene: Variant, causes: Sequence[str]) -> tuple[Array, Array]:
-    """Return displacement [m] and pressure [Pa] of the scene's own scheme with what a program may add without fault.
+def shown(target: Target, v: Variant) -> Array:
+    """Return displacement [m] and pressure [Pa] of a variant at the recorded rows, (2, rows)."""
+    run = histories(target.column, [v], target.steps)
+    return np.array([run.displacement[target.rows, 0], run.pressure[target.rows, 0]])
+
+
+def expected(target: Target, explanation: Fit, scene: Variant, causes: Sequence[str]) -> Array:
+    """Return the same of the scene's own scheme with what a program may add without fault.
 
     That is the fit's weight, moving geometry and slightly compliant base.
     """
     v = explanation.variant
     yields = "base-compliance" in causes
     softness, base = (v.softness, v.base) if yields else (0.0, 0.0)
-    plain = replace(scene, softness=softness, base=base, weight=v.weight, updated=v.updated)
-    run = histories(target.column, [plain], target.steps)
-    return run.displacement[:, 0], run.pressure[:, 0]
+    return shown(target, replace(scene, softness=softness, base=base, weight=v.weight, updated=v.updated))
 
 
 def departure(
-    target: Target, expected_columns: tuple[Array, Array], causes: Sequence[str], open_steps: Sequence[int]
+    target: Target, expected_columns: Array, causes: Sequence[str], open_steps: Sequence[int]
 ) -> Departure | None:
     """Return where the history departs; None if there is no cause but benign ones.
 
@@ -63,11 +67,8 @@ def departure(
     if {"sign", "unit"} & set(causes):
         return Departure(int(target.rows[0]) + 1, "amplitude")
     columns = list(zip(target.recorded, expected_columns, target.bars, strict=False))
-    departing = [c for c in columns if not c[2].holds(c[0] - c[1][target.rows])]
-    dated = [
-        measured(expected_values[target.rows], values, target.rows, bar.spread)
-        for values, expected_values, bar in departing or columns[:1]
-    ]
+    departing = [(ours, theirs, bar) for ours, theirs, bar in columns if not bar.holds(ours - theirs)]
+    dated = [measured(theirs, ours, target.rows, bar.spread) for ours, theirs, bar in departing or columns[:1]]
     first = replace(dated[0], step=min(one.step for one in dated))
     if open_steps and set(causes) & {"contact-opened"} and first.step > open_steps[0]:
         return Departure(open_steps[0], first.kind)
@@ -117,10 +118,6 @@ class Stage:
     words: str
     numbers: dict[str, float | None]
 
-    def as_dict(self) -> dict[str, Any]:
-        """Return plain data."""
-        return {"stage": self.name, "agrees": self.agrees, "words": self.words, **self.numbers}
-
 
 def surrounded(stage: Stage, explained_by: str = "what surrounds the block") -> Stage:
     """Return a stage whose number differs from the scene's for a reason that is no fault."""
@@ -169,15 +166,9 @@ def earlier(departure: Departure | None, single_rows: Sequence[tuple[str, int, f
     return departure
 
 
-def stages(target: Target, expected: Sequence[Array], reading: Reading, factor: float | None) -> list[Stage]:
-    """Return the stages up to the damping, with the scene's own displacement and pressure at the recorded rows.
-
-    The factor is the growth in a step, None if bounded.
-    """
-    bounded = "bounded" if factor is None else f"grows by a factor of {factor:.4g} a step"
-    measured = [reading_stage(reading), Stage("bounded", factor is None, bounded, {"growth": factor})]
-    if factor is not None:
-        return measured
+def stages(target: Target, expected: Array, reading: Reading) -> list[Stage]:
+    """Return the stages up to the damping, with the scene's own displacement and pressure at the recorded rows."""
+    measured = [reading_stage(reading)]
     for name, values, expected_values, bar in zip(
         (DISPLACEMENT, PRESSURE), target.recorded, expected, target.bars, strict=False
     ):

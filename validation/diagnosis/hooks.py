@@ -46,7 +46,3 @@ class DiagnosisHooks(Hooks):
     def check(self, scene: Scene) -> None:
         """Refuse by an `InputError` what `compare` does not step, before anything of it is run."""
         raise unread(scene, scene.kind_in_words)
-
-    def rivals(self, scene: Scene) -> tuple[str, ...]:
-        """Return the names of the solvers that a history is held against beside DDA."""
-        return ()

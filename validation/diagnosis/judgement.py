@@ -10,16 +10,15 @@ from typing import Any
 import numpy as np
 
 from validation.diagnosis import causes, evidence, families, schemes, sentences, slopes
-from validation.diagnosis.answer import Answer
+from validation.diagnosis.answer import Answer, curves, finished
 from validation.diagnosis.beside import RunVerdict, answer_of
-from validation.diagnosis.causes import CAUSES, DIVERGED, SINGLE_ROWS, SWAPPED, UNEXPLAINED, all_benign
+from validation.diagnosis.causes import CAUSES, DIVERGED, SINGLE_ROWS, SWAPPED, UNEXPLAINED
 from validation.diagnosis.constants import FARTHER, SAME_NUMBER
 from validation.diagnosis.evidence import Stage
 from validation.diagnosis.fits.fit import Fit, explains, fit_one, intervals, untold
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.hooks import DiagnosisHooks
 from validation.diagnosis.other_solvers import (
-    DDA,
     as_they_are,
     judged_without_rectangle,
     not_installed,
@@ -34,14 +33,12 @@ from validation.diagnosis.readings import (
     has_swapped_columns,
     readings_of,
     remedy_of,
-    words_of_slips,
 )
 from validation.diagnosis.scene_keys import assignments
 from validation.diagnosis.search import Verdict, as_it_is, simple, twofold, with_same_rows
 from validation.diagnosis.stepping import histories
-from validation.diagnosis.variant import OPENING, Flags, Histories, Rectangle, Variant, own_variant, rectangle_of
+from validation.diagnosis.variant import OPENING, Flags, Rectangle, Variant, own_variant, rectangle_of
 from validation.errors import InputError
-from validation.metrics.values import largest
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.runs.numbers import remainder_text, significant
 from validation.scenes import features
@@ -71,14 +68,12 @@ class Case:
     @property
     def single_rows(self) -> list[tuple[str, int, float]]:
         """Column, step and error over the largest value of each row that is none of the motion's."""
-        rows: list[tuple[str, int, float]] = []
         if self.left_out is None or self.as_read is None:
-            return rows
-        for column, row in np.argwhere(self.left_out).tolist():
-            mended = self.target.recorded[column]
-            error = abs(float(self.as_read.recorded[column, row] - mended[row])) / largest(mended)
-            rows.append((NAMES[column], int(self.target.rows[row]) + 1, error))
-        return rows
+            return []
+        mended = self.target.recorded
+        errors = np.abs(self.as_read.recorded - mended) / np.max(np.abs(mended), axis=1, keepdims=True)
+        places = np.argwhere(self.left_out).tolist()
+        return [(NAMES[i], int(self.target.rows[row]) + 1, float(errors[i, row])) for i, row in places]
 
     def without_single_rows(self, explanation: Fit) -> Case | None:
         """Return the case without the single rows that stand out of what a fit leaves; None where none do."""
@@ -97,15 +92,14 @@ class Case:
         return np.asarray(np.cumsum(self.target.steps)[self.target.rows])
 
     @cached_property
-    def scene_run(self) -> Histories:
-        """The scene's own run at the steps of the history."""
-        return histories(self.target.column, [self.scene_variant], self.target.steps)
+    def expected(self) -> Array:
+        """Displacement [m] and pressure [Pa] of the scene's own run at the recorded rows, (2, rows)."""
+        return evidence.shown(self.target, self.scene_variant)
 
-    @property
-    def expected(self) -> tuple[Array, Array]:
-        """Displacement [m] and pressure [Pa] of the scene's own run at the recorded rows."""
-        rows = self.target.rows
-        return self.scene_run.displacement[rows, 0], self.scene_run.pressure[rows, 0]
+    @cached_property
+    def stages(self) -> list[Stage]:
+        """What is seen beside that run, without a cause."""
+        return evidence.stages(self.target, self.expected, self.reading)
 
 
 def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
@@ -121,33 +115,34 @@ def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
     InputError
         The scene has a sweep or a feature that is not known here, or the history is zero throughout or does not fit.
     """
-    _refuse_what_is_not_known(scene)
     hooks = DiagnosisHooks.of(scene)
-    foreign = replace(foreign, notes=(*foreign.notes, *not_installed(scene, hooks.rivals(scene))))
-    if has_swapped_columns(scene, foreign):
-        return _of_swapped(scene, foreign, (DISPLACEMENT, PRESSURE), tolerance)
-    answer = hooks.judged(scene, foreign, tolerance)
-    if answer.remedy.startswith("--columns"):  # of swapped columns, with friction: it is whole
-        return answer
-    return replace(answer, remedy=f"{remedy_of(foreign, answer.slips)} {answer.remedy}".strip())
-
-
-def _of_swapped(scene: Scene, foreign: Foreign, pair: tuple[str, str], tolerance: float) -> Answer:
-    """Return the answer to a history with two columns exchanged, and what to type for that."""
-    foreign = exchanged(foreign, *pair)
-    answer = DiagnosisHooks.of(scene).judged(scene, foreign, tolerance)
-    first, second = (name.replace("_", " ") for name in pair)
-    columns = ",".join(f"{name}={place}" for name, place in foreign.names.items())
-    remedy = " ".join([f"--columns {columns}", remedy_of(foreign, answer.slips), answer.remedy]).strip()
-    sentence = f"The {first} is in the column of the {second}, and the reverse. Read so: {answer.sentence}"
-    causes = answer.causes if UNEXPLAINED in answer.causes else [SWAPPED, *answer.causes]
-    return replace(answer, causes=causes, sentence=sentence, remedy=remedy)
-
-
-def _refuse_what_is_not_known(scene: Scene) -> None:
-    DiagnosisHooks.of(scene).check(scene)
+    hooks.check(scene)
     features.refuse_damping(scene, "compare")
     features.refuse_sweep(scene)
+    pair = _swapped(scene, foreign)
+    if pair is not None:
+        foreign = exchanged(foreign, *pair)
+    answer = hooks.judged(scene, foreign, tolerance)
+    options = [remedy_of(foreign, answer.slips), answer.remedy]
+    if pair is not None:
+        first, second = (name.replace("_", " ") for name in pair)
+        sentence = f"The {first} is in the column of the {second}, and the reverse. Read so: {answer.sentence}"
+        ids = answer.causes if UNEXPLAINED in answer.causes else [SWAPPED, *answer.causes]
+        answer = replace(answer, causes=ids, sentence=sentence)
+        options.insert(0, f"--columns {','.join(f'{name}={place}' for name, place in foreign.header.theirs.items())}")
+    return replace(answer, remedy=" ".join(filter(None, options)))
+
+
+def _swapped(scene: Scene, foreign: Foreign) -> tuple[str, str] | None:
+    """Return two columns in each other's place: by their size, with friction where the scene's own run says so."""
+    if features.FRICTION not in features.of(scene):
+        return (DISPLACEMENT, PRESSURE) if has_swapped_columns(scene, foreign) else None
+    pair = (DISPLACEMENT, SIDEWAYS)
+    for read, swapped in ((foreign, None), (exchanged(foreign, *pair), pair)):
+        search = slopes.search_of(scene, read)
+        if search.is_scene() and not search.reading.corrected:
+            return swapped
+    return None
 
 
 def check_block(scene: Scene) -> None:
@@ -179,13 +174,8 @@ def check_block(scene: Scene) -> None:
 def judged_block(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
     """Judge a history of a block that `compare` steps."""
     if features.FRICTION in features.of(scene):
-        pair = (DISPLACEMENT, SIDEWAYS)
-        search = slopes.search_of(scene, foreign)
-        if search.reading.corrected or not search.is_scene():
-            swapped = slopes.search_of(scene, exchanged(foreign, *pair))
-            if swapped.is_scene() and not swapped.reading.corrected:
-                return _of_swapped(scene, foreign, pair, tolerance)
-        return slopes.answer_on(search, foreign)
+        return slopes.answer_on(slopes.search_of(scene, foreign), foreign)
+    foreign = replace(foreign, notes=(*foreign.notes, *not_installed(scene, rivals_of(scene))))
     column = rectangle_of(scene)
     unloaded = scene.load.gravity and not scene.load.pressure  # nothing moves where a program leaves gravity out
     if not (np.any(foreign.displacement) or (unloaded and column is not None)):
@@ -196,11 +186,11 @@ def judged_block(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
     read = readings_of(scene, column, scene_variant, foreign)
     cases = [Case(scene, foreign, reading, column, scene_variant) for reading in read]
     for values, expected in zip(read[0].recorded, cases[0].expected, strict=False):
-        factor = evidence.growth(values, expected)
-        if factor is not None:
-            return _diverged(cases[0], factor)
+        growth = evidence.growth(values, expected)
+        if growth is not None:
+            return _diverged(cases[0], growth)
     case, verdict = _best(cases)
-    misfits = [stage.numbers["misfit"] for stage in _stages(case) if "misfit" in stage.numbers] if tolerance else []
+    misfits = [stage.numbers["misfit"] for stage in case.stages if "misfit" in stage.numbers] if tolerance else []
     if misfits and all(misfit is not None and misfit <= tolerance for misfit in misfits):
         verdict = Verdict(verdict.scene_fit, replace(verdict.best, moves=(), fit=verdict.scene_fit), True)
     if not verdict.explains:
@@ -210,11 +200,11 @@ def judged_block(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
     alone = verdict.best.fit.misfit
     has_rivals = scene.contact.law == "locked" and scene.time.scheme == "newmark" and np.ptp(case.target.steps) == 0
     rivals = searches_beside(scene, [case.reading], rivals_of(scene)) if has_rivals else []
-    theirs = as_they_are(rivals) or with_one_change([rival for rival in rivals if not rival.is_slow])
+    theirs = as_they_are(rivals) or with_one_change([rival for rival in rivals if not rival.solver.meshed])
     if theirs is None or not theirs.explained or FARTHER * theirs.left > alone:
         verdict = twofold(case.target, scene_variant, verdict)
         # runs of a mesh take longest
-        theirs = None if verdict.explains else with_one_change([rival for rival in rivals if rival.is_slow])
+        theirs = None if verdict.explains else with_one_change([rival for rival in rivals if rival.solver.meshed])
     if theirs is not None and theirs.explained and FARTHER * theirs.left <= alone:
         return _of_rival(case, theirs)
     return _answer(case, verdict)
@@ -222,9 +212,8 @@ def judged_block(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
 
 def _beyond(scene: Scene) -> list[str]:
     """Return what `compare` does not take of a scene whose contact opens."""
-    gap, velocity = scene.contact.gap, scene.block.velocity
-    numbers = [f"contact.gap = {gap:g}"] if gap else []
-    numbers += [f"block.velocity = {velocity:g}"] if velocity else []
+    stated = {"contact.gap": scene.contact.gap, "block.velocity": scene.block.velocity}
+    numbers = [f"{key} = {value:g}" for key, value in stated.items() if value]
     others = [name for name in features.of(scene) if name not in OPENING]
     return numbers or others or ["another contact.band"]
 
@@ -265,134 +254,97 @@ def _without_single_rows(case: Case, verdict: Verdict) -> tuple[Case, Verdict]:
 # ---- answers ----
 
 
-def _stages(case: Case, factor: float | None = None) -> list[Stage]:
-    return evidence.stages(case.target, case.expected, case.reading, factor)
-
-
 def _answer(case: Case, verdict: Verdict) -> Answer:
-    target, scene_variant, best_fit = case.target, case.scene_variant, verdict.best.fit
+    target, scene_variant, reading = case.target, case.scene_variant, case.reading
     verdict = with_same_rows(target, scene_variant, verdict)
-    stages = _stages(case)
-    corrected = case.reading.corrected
-    error = intervals(best_fit)["softness"].half_width if "softness" in best_fit.free else 0.0
+    best = verdict.best.fit
+    error = intervals(best)["softness"].half_width if "softness" in best.free else 0.0
     single_rows = case.single_rows
-    all_causes = list(case.reading.slips) + ([SINGLE_ROWS] if single_rows else [])
-    all_causes += causes.causes_of(target.column, verdict.best.ids, best_fit.variant, scene_variant, error)
-    either = families.sign_or_gravity(target, all_causes, corrected) if verdict.explained else []
-    unexplained = 0.0 if verdict.explained else significant(verdict.left, 4)
-    if either:
-        verdict = replace(verdict, explained=False)
-    ids = all_causes if verdict.explained else [UNEXPLAINED]
-    v = _told_apart(target, best_fit.variant) if verdict.explained else scene_variant
-    steps = _opened(target, best_fit.variant) if verdict.explained else []
-    shown = verdict.best.fit if verdict.explained else verdict.scene_fit
-    expected = evidence.expected(target, shown, scene_variant, ids)
-    first_departure = evidence.departure(target, expected, all_causes if either else ids, steps)
+    found = [SINGLE_ROWS] if single_rows else []
+    found += causes.causes_of(target.column, verdict.best.ids, best.variant, scene_variant, error)
+    ids = [*reading.slips, *found]
+    either = families.sign_or_gravity(target, ids, reading.corrected) if verdict.explained else []
+    explained = verdict.explained and not either
+    v, undecided = _told_apart(target, best.variant) if explained else (best.variant, {})
+    values = causes.values_of(target.column, found, v)
+    alike = either or families.as_good(target, verdict)
+    words: dict[str, str] = {}
+    further: dict[str, Any] = {}
+    steps: list[int] = []
+    if explained:
+        steps = _opened(target, best.variant)
+        ends = causes.intervals_of(target, best, found)
+        between = {name: ends[name] for name in causes.BAND_FIELDS if name in ends}
+        values |= {name: causes.roundest(*limits) for name, limits in between.items()}
+        if single_rows:
+            values[SINGLE_ROWS] = min(step for _, step, _ in single_rows)
+        alike = alike or families.relatives(target, scene_variant, verdict, ids, v)
+        more = undecided | {"scheme": sentences.scheme_of(scene_variant), "rows": evidence.words_of_rows(single_rows)}
+        if steps:
+            more["open_steps"] = f" in steps {sentences.span(steps)}"
+        for name, (low, high) in between.items():
+            unit = "m" if name == "dead-band" else "Pa"
+            more["between"] = f" ({low:.3g} to {high:.3g} {unit} give the same rows)"
+        words = {name: causes.words_of(name, values.get(name, 0.0), v, scene_variant, **more) for name in found}
+        of_scheme = ("alpha", "delta", "gg") if v.family == "newmark" else ("gg",)
+        refitted = fit_one(target, v, tuple(dict.fromkeys((*of_scheme, *best.free))))
+        further = {
+            "opened": (steps[0], steps[-1]) if steps else None,
+            "told": intervals(refitted),
+            "untold": untold(refitted),
+            "intervals": ends,
+            "remedy": assignments(ids, v, scene_variant),
+        }
+    stages = list(case.stages)
+    named = ids if verdict.explained else [UNEXPLAINED]
+    expected = evidence.expected(target, best if verdict.explained else verdict.scene_fit, scene_variant, named)
+    departure = evidence.departure(target, expected, named, steps)
     if single_rows:
         stages.insert(1, evidence.single_rows_stage(single_rows))
-        first_departure = evidence.earlier(first_departure, single_rows)
-    of_scheme = ("alpha", "delta", "gg") if v.family == "newmark" else ("gg",)
-    refitted = fit_one(target, v, tuple(dict.fromkeys((*of_scheme, *shown.free))))
-    values = causes.values_of(target.column, ids, v)
-    if SINGLE_ROWS in ids:
-        values[SINGLE_ROWS] = min(step for _, step, _ in single_rows)
-    ends = causes.intervals_of(target, best_fit, ids) if verdict.explained else {}
-    limits = [name for name in causes.BAND_FIELDS if name in ends]
-    values |= {name: causes.roundest(*ends[name]) for name in limits}
-    alike = either or families.as_good(target, verdict)
-    alike = alike or families.relatives(target, scene_variant, verdict, ids, v)
-    nearest: dict[str, Any] | None = None
-    if not (verdict.explained or alike):
-        numbers = causes.values_of(target.column, all_causes, best_fit.variant)
-        nearest = {"causes": all_causes, "values": numbers, "left": unexplained}
-    if verdict.explained and ids and all_benign(ids):
-        stages = [evidence.surrounded(stage) for stage in stages]
-    further = {"scheme": sentences.scheme_of(scene_variant), "rows": evidence.words_of_rows(single_rows)}
-    if steps:
-        further["open_steps"] = f" in steps {sentences.span(steps)}"
-    for name in limits:
-        low, high = ends[name]
-        unit = "m" if name == "dead-band" else "Pa"
-        further["between"] = f" ({low:.3g} to {high:.3g} {unit} give the same rows)"
-    further |= _undecided(target, v, ids)
-    words = {name: causes.words_of(name, values.get(name, 0.0), v, scene_variant, **further) for name in ids}
-    subject = sentences.Subject(
-        sentences.scheme_of(v) + (schemes.other_names(v) if any(CAUSES[name].integrator for name in ids) else ""),
-        words | words_of_slips(corrected),
-        first_departure,
-        sentences.remaining(best_fit.misfit),
-        alike,
-    )
-    if not verdict.explained:
-        sentence = sentences.not_explained(subject, nearest, unexplained, stages)
-    else:
-        sentence = sentences.sentence(subject)
-    best = histories(target.column, [best_fit.variant], target.steps)
-    as_read = case.as_read or case.reading
-    columns: dict[str, Sequence[Array]] = {
-        "the file": list(as_read.recorded),
-        DDA: [values[target.rows] for values in expected],
-        "best": [best.displacement[target.rows, 0], best.pressure[target.rows, 0]],
-    }
-    return Answer(
-        scheme=schemes.scheme_numbers(v),
-        departure=first_departure,
-        causes=ids,
-        opened=(steps[0], steps[-1]) if steps else None,
-        sentence=sentence,
-        notes=(*case.foreign.notes, *case.reading.notes),
-        told=intervals(refitted) if verdict.explained else {},
-        untold=untold(refitted) if verdict.explained else [],
-        misfit=best_fit.misfit,
-        curves={name: (case.time, run[0]) for name, run in columns.items()},
+        departure = evidence.earlier(departure, single_rows)
+    as_read = case.as_read or reading
+    columns = NAMES[: len(as_read.recorded)]
+    stated = v if explained else scene_variant
+    answer = Answer(
+        causes=found,
         values=values,
-        unexplained=unexplained,
-        nearest=nearest,
+        scheme=schemes.scheme_numbers(stated),
+        departure=departure,
+        notes=(*case.foreign.notes, *reading.notes),
+        misfit=best.misfit,
+        curves=curves(case.time, columns, as_read.recorded, expected, evidence.shown(target, best.variant)),
+        unexplained=0.0 if verdict.explained else significant(verdict.left, 4),
         alike=alike,
         evidence=tuple(stages),
-        slips=corrected if verdict.explained else (),
-        pressures={name: run[1] for name, run in columns.items()} if target.pressure is not None else {},
-        intervals=ends,
-        remedy=assignments(ids, v, scene_variant) if verdict.explained else "",
+        **further,
     )
+    others = schemes.other_names(v) if explained and any(CAUSES[name].integrator for name in ids) else ""
+    return finished(answer, reading, explained, words, sentences.scheme_of(stated) + others)
 
 
-def _undecided(target: Target, v: Variant, ids: Sequence[str]) -> dict[str, str]:
-    """Return the words for what the rows may leave open: the split of a scheme, the form of a contact's force."""
+def _told_apart(target: Target, v: Variant) -> tuple[Variant, dict[str, str]]:
+    """Return the usual one of variants that give the same rows, and in words what these leave open.
+
+    That is the smaller split of a composite scheme, a dashpot that is clipped, and the form of a contact's force.
+    """
     words = {}
     if v.family == "composite":
+        first, other = sorted((schemes.split_of(v), schemes.companion_split(v)))
         words["split"] = f"split {schemes.split_of(v):.4g}"
-        if _has_second_split(target, v):
-            other = f" or {schemes.companion_split(v):.4g}, which give the same rows while contact stays closed"
-            words["split"] += other
-    if "contact-dashpot" in ids and v.opens:
+        if other - first >= SAME_NUMBER and explains(target, replace(v, split=schemes.companion_split(v))):
+            words["split"] = f"split {first:.4g} or {other:.4g}, which give the same rows while contact stays closed"
+            v = replace(v, split=first)
+    if v.contact == "dashpot":
         words["clipping"] = ", clipped" if v.clipped else ", not clipped: it pulls before the contact opens"
         if explains(target, replace(v, clipped=not v.clipped)):
-            words["clipping"] = "; these rows do not tell whether it is clipped"
+            words["clipping"] = "; these rows do not tell whether it is clipped" if v.opens else ""
+            v = replace(v, clipped=True)
     if v.opens and schemes.stages(v)[-1].af > 0:
         is_of_gaps = v.contact == "mean gap"
         if not explains(target, replace(v, contact="springs" if is_of_gaps else "mean gap")):
             of = "that of the mean gap" if is_of_gaps else "the mean of those at both ends"
             words["form"] = f", the contact force {of}"
-    return words
-
-
-def _has_second_split(target: Target, v: Variant) -> bool:
-    """Whether a composite scheme gives the same rows with another split."""
-    other = schemes.companion_split(v)
-    if abs(other - schemes.split_of(v)) < SAME_NUMBER:
-        return False
-    return explains(target, replace(v, split=other))
-
-
-def _told_apart(target: Target, v: Variant) -> Variant:
-    """Return the usual one of two variants that give the same rows: the smaller split, the clipped dashpot."""
-    if v.family == "composite" and _has_second_split(target, v):
-        return replace(v, split=min(schemes.split_of(v), schemes.companion_split(v)))
-    if v.contact == "dashpot" and not v.clipped:
-        clipped = replace(v, clipped=True)
-        return clipped if explains(target, clipped) else v
-    return v
+    return v, words
 
 
 def _opened(target: Target, v: Variant) -> list[int]:
@@ -402,21 +354,20 @@ def _opened(target: Target, v: Variant) -> list[int]:
     return [int(i) + 1 for i in np.flatnonzero(histories(target.column, [v], target.steps).open[:, 0])]
 
 
-def _diverged(case: Case, factor: float) -> Answer:
+def _diverged(case: Case, growth: float) -> Answer:
     """Return the answer to a history without bounds: no cause beyond that is looked for."""
-    target, stages = case.target, _stages(case, factor)
-    expected = case.expected[0]
-    first_departure = evidence.unbounded(expected, target.displacement, target.rows)
-    v = case.scene_variant
+    target = case.target
+    first = evidence.unbounded(case.expected[0], target.displacement, target.rows)
     return Answer(
-        scheme={"alpha": v.alpha, "delta": v.delta, "gg": v.gg},
-        departure=first_departure,
+        scheme=schemes.scheme_numbers(case.scene_variant),
+        departure=first,
         causes=[DIVERGED],
-        sentence=sentences.diverged(first_departure, factor),
+        sentence=f"Departs from step {first.step} on: the run diverged, by a factor of {growth:.4g} a step; "
+        "nothing else can be told from it.",
         notes=(*case.foreign.notes, *case.reading.notes),
-        curves={"the file": (case.time, target.displacement), DDA: (case.time, expected)},
-        values={DIVERGED: significant(factor, 6)},
-        evidence=tuple(stages),
+        curves=curves(case.time, NAMES[:1], target.recorded, case.expected),
+        values={DIVERGED: significant(growth, 6)},
+        evidence=(evidence.reading_stage(case.reading),),
     )
 
 
@@ -426,5 +377,5 @@ def _of_rival(case: Case, verdict: RunVerdict) -> Answer:
     displacement = case.reading.displacement
     off = float(np.linalg.norm(case.expected[0] - displacement) / np.linalg.norm(displacement))
     sentence = f"{answer.sentence[:-1]}; the scene's own run by DDA is {remainder_text(off, 2)} % off."
-    stages = tuple(evidence.surrounded(stage, "another model") for stage in _stages(case))
+    stages = tuple(evidence.surrounded(stage, "another model") for stage in case.stages)
     return replace(answer, sentence=sentence, evidence=stages)

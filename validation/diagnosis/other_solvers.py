@@ -21,6 +21,7 @@ from validation.diagnosis.one_change import STARTS, Fitted, of_scene
 from validation.diagnosis.reading import Foreign
 from validation.diagnosis.readings import Reading
 from validation.diagnosis.variant import rectangle_of
+from validation.errors import InputError
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.scenes.scene import Scene
 from validation.solvers.registry import get_solver

@@ -6,12 +6,13 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
+from typing import Any
 
 import numpy as np
 
-from validation.diagnosis.constants import UNBOUNDED, UNIT_POWERS
+from validation.diagnosis.constants import UNIT_POWERS
 from validation.diagnosis.fits.bar import last_digits
-from validation.diagnosis.reading import SIDEWAYS, Foreign, Stepping, steppings
+from validation.diagnosis.reading import FIELDS, Foreign, Stepping, steppings
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Rectangle, Variant
 from validation.metrics.values import largest
@@ -20,14 +21,10 @@ from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.runs.units import ratios
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Role
+from validation.solvers.history_table import HeaderNames
 from validation.solvers.registry import by_role, get_solver
 
 POSITIVE = {DISPLACEMENT: "upwards", PRESSURE: "compression"}  # what is positive in a column
-FIELDS = {  # of a column and its rounding in `Foreign`
-    DISPLACEMENT: ("displacement", "rounding"),
-    PRESSURE: ("pressure", "pressure_rounding"),
-    SIDEWAYS: ("sideways", "sideways_rounding"),
-}
 NEAR_POWER = 0.5  # given: of the exponent: the nearest power of ten
 NEAR = 3.5  # powers of ten, a thousand and a half: swapped columns are so near to each other's size, not to their own
 
@@ -52,10 +49,11 @@ class Slip:
 
 def remedy_of(foreign: Foreign, slips: Sequence[Slip]) -> str:
     """Return the option by which a history is read without its errors of sign and unit, empty if it has none."""
+    scale = foreign.header.factors
     factors: dict[str, float] = {}
     for slip in slips:
-        factors[slip.column] = factors.get(slip.column, foreign.scale.get(slip.column, 1.0)) / slip.factor
-    typed = {name: factor for name, factor in foreign.scale.items() if factor != 1} | factors
+        factors[slip.column] = factors.get(slip.column, scale.get(slip.column, 1.0)) / slip.factor
+    typed = {name: factor for name, factor in scale.items() if factor != 1} | factors
     return f"--scale {','.join(f'{name}={factor:g}' for name, factor in typed.items())}" if factors else ""
 
 
@@ -67,12 +65,14 @@ def words_of_slips(slips: Sequence[Slip]) -> dict[str, str]:
 
 def exchanged(foreign: Foreign, first: str, second: str) -> Foreign:
     """Return a history with two columns in each other's place."""
-    names = {first: foreign.names.get(second, second), second: foreign.names.get(first, first)}
-    scale = {first: foreign.scale.get(second, 1.0), second: foreign.scale.get(first, 1.0)}
-    places = FIELDS[first] + FIELDS[second]
-    sources = FIELDS[second] + FIELDS[first]
-    columns = {place: getattr(foreign, source) for place, source in zip(places, sources, strict=True)}
-    return replace(foreign, names={**foreign.names, **names}, scale={**foreign.scale, **scale}, **columns)
+    header = foreign.header
+    others = {first: second, second: first}
+    theirs = {name: header.theirs.get(other, other) for name, other in others.items()}
+    factors = {name: header.factors.get(other, 1.0) for name, other in others.items()}
+    columns: dict[str, Any] = {FIELDS[name]: foreign.column(other) for name, other in others.items()}
+    roundings = {others.get(name, name): unit for name, unit in foreign.roundings.items()}
+    header = HeaderNames({**header.theirs, **theirs}, {**header.factors, **factors})
+    return replace(foreign, **columns, roundings=roundings, header=header)
 
 
 def has_swapped_columns(scene: Scene, foreign: Foreign) -> bool:
@@ -136,18 +136,13 @@ def readings_of(scene: Scene, column: Rectangle, scene_variant: Variant, foreign
     return readings
 
 
-def slips(
-    foreign: Foreign, stepping: Stepping, reference: Array, contact: Array, furthest: float = UNBOUNDED
-) -> list[Reading]:
-    """Return the readings without slips of sign and unit, as sizes beside the scene's own history suggest.
-
-    That history counts as unbounded beyond `furthest` times its first row.
-    """
+def slips(foreign: Foreign, stepping: Stepping, reference: Array, contact: Array) -> list[Reading]:
+    """Return the readings without slips of sign and unit, as sizes beside the scene's own history suggest."""
     of_pressure = [(1.0, 1.0)]
     if foreign.pressure is not None and np.any(foreign.pressure):
-        first = _factors(foreign.pressure, contact, furthest)[0]
+        first = _factors(foreign.pressure, contact)[0]
         of_pressure = list(dict.fromkeys([first, (first[0], 1.0), (1.0, 1.0)]))
-    of_displacement = _factors(foreign.displacement, reference, furthest)
+    of_displacement = _factors(foreign.displacement, reference)
     readings = [
         without_slips(foreign, stepping, {DISPLACEMENT: own, PRESSURE: other})
         for own, other in product(of_displacement, of_pressure)
@@ -169,11 +164,13 @@ def without_slips(
     columns = []
     units = []
     for name, (sign, factor) in factors.items():
-        values, stated = (getattr(foreign, place) for place in FIELDS[name])
+        values = foreign.column(name)
         if values is None:
             continue
         # units of the last digits as in the file: in other units they are not seen
-        unit = last_digits(values) if stated is None else stated
+        unit = foreign.roundings.get(name)
+        if unit is None:
+            unit = last_digits(values)
         columns.append(values * sign / factor)
         units.append(unit / factor)
         corrected += [Slip("sign", name, -1.0)] if sign < 0 else []
@@ -181,12 +178,11 @@ def without_slips(
     return Reading(stepping, np.array(columns), np.array(units), tuple(corrected))
 
 
-def _factors(values: Array, reference: Array, furthest: float) -> list[tuple[float, float]]:
+def _factors(values: Array, reference: Array) -> list[tuple[float, float]]:
     """Return the sign and the powers of ten by which values may be off, the likeliest first."""
     with np.errstate(all="ignore"):
-        most = furthest * abs(reference[0] or 1.0)
-        bounded = np.clip(np.nan_to_num(reference), -most, most)
-    sign = -1.0 if float(values @ bounded) < 0 else 1.0
+        bounded = np.nan_to_num(reference)
+        sign = -1.0 if float(values @ bounded) < 0 else 1.0
     ratio = math.log10(largest(values) / (largest(bounded) or 1.0) or 1.0)
     near = [10.0**power for power in UNIT_POWERS if abs(ratio - power) < NEAR_POWER]
     return [(turn * sign, factor) for turn in (1.0, -1.0) for factor in (*near, 1.0)]

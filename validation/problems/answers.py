@@ -271,7 +271,8 @@ def read_answer(
     """
     required = posed.columns if columns is None else columns
     units = {column: posed.unit(column) for column in (*required, *posed.further_columns)}
-    table = read_table(path, posed.instants, units, required, defects, ABSENT, header=header)
+    advice = dict.fromkeys(required, ABSENT)
+    table = read_table(path, posed.instants, units, required, defects, advice, header=header)
     if table is None:
         return None
     before = len(defects)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -12,31 +12,61 @@ from validation.errors import InputError
 from validation.runs.defects import Defects, Place
 from validation.runs.history import Array, History
 from validation.runs.tables import Cell, Row, meant, number, read_text, rows_of
-from validation.runs.units import named, recognised
+from validation.runs.units import factors_of, named, recognised, theirs_of
 from validation.scenes.unknown import did_you_mean
 
 LARGEST_FILE = 100_000_000  # bytes
 LARGEST = 1e100  # of a value in SI units; the squares of larger ones overflow
 SAME_INSTANT = 1e-3  # of a step: times are often printed with few digits
 TIME = "time"
+NO_ADVICE: Mapping[str, str] = {}
 
 
 @dataclass(frozen=True)
 class HeaderNames:
-    """What a table calls columns, and factors by which its numbers become SI where its names do not say so."""
+    """What a table calls columns, and factors by which its numbers become SI where its names do not say so.
+
+    A column is called by its header, in any case where that is not another's, or by its number from 1 on.
+    """
 
     theirs: Mapping[str, str] = field(default_factory=dict)
     factors: Mapping[str, float] = field(default_factory=dict)
 
-    def recognised(self, text: str, known: Mapping[str, str]) -> tuple[str, float] | None:
-        """Return which of the known columns a header names, and the factor to SI; None where it names none."""
-        found = next(((column, 1.0) for column, theirs in self.theirs.items() if theirs == text), None)
-        if found is None:
-            found = recognised(text, {column: unit for column, unit in known.items() if column not in self.theirs})
-        return None if found is None else (found[0], found[1] * self.factors.get(found[0], 1.0))
+    @classmethod
+    def typed(cls, columns: str | None, scale: str | None, ours: Collection[str]) -> HeaderNames:
+        """Return what the options ``--columns`` and ``--scale`` say of columns of ours."""
+        return cls(theirs_of(columns, ours), factors_of(scale, ours))
+
+    def recognised(self, texts: Sequence[str], known: Mapping[str, str]) -> list[tuple[str, float] | None]:
+        """Return which of the known columns each header names, and the factor to SI; None where it names none."""
+        named_by_place = {_place(theirs, texts): column for column, theirs in self.theirs.items()}
+        others = {column: unit for column, unit in known.items() if column not in self.theirs}
+        found: list[tuple[str, float] | None] = []
+        for i, text in enumerate(texts):
+            one = (named_by_place[i], 1.0) if i in named_by_place else recognised(text, others)
+            found.append(None if one is None else (one[0], one[1] * self.factors.get(one[0], 1.0)))
+        return found
 
 
 AS_NAMED = HeaderNames()
+
+
+def _place(theirs: str, texts: Sequence[str]) -> int | None:
+    """Return the index of a column by its header or its number, None where there is none."""
+    folded = [text.casefold() for text in texts]
+    numbers = [str(i + 1) for i in range(len(texts))]
+    ways = ((theirs, texts), (theirs.casefold(), folded), (theirs, numbers))
+    return next((list(names).index(name) for name, names in ways if name in names), None)
+
+
+@dataclass(frozen=True, eq=False)
+class Columns:
+    """Columns of a table by our names, with the cells of its header and those of its times."""
+
+    numbers: Mapping[str, Array]  # as in the file
+    factors: Mapping[str, float]  # by which they become SI
+    header: Mapping[str, Cell]
+    times: Sequence[Cell]
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,140 +83,148 @@ def read_table(
     units: Mapping[str, str],
     required: Collection[str],
     defects: Defects,
-    absent: str | None = None,
+    absent: Mapping[str, str] = NO_ADVICE,
     text: str | None = None,
     header: HeaderNames = AS_NAMED,
 ) -> HistoryTable | None:
     """Return the history of a table; None where it has defects, or where it is blank.
 
-    A row at t = 0 is left out, and so are columns of other names where nothing is missing.
-
-    It has to have its rows at the instants [s]. Columns are read that have a unit (SI); `absent` is what to do about a
-    column that the program cannot report. Text is a table that a program has printed, of which the path is the name.
+    It has to have its rows at the instants [s]; a row at t = 0 is left out. Text is a table that a program has printed,
+    of which the path is the name. The rest is as in `columns_of`.
     """
     before = len(defects)
-    rows = _rows(path, text, len(instants), defects)
-    if not rows:
-        return None
-    cells = rows[0]
-    known = {TIME: "s"} | dict(units)
-    found = [header.recognised(cell.text, known) for cell in cells]
-    timed = any(one is not None and one[0] == TIME for one in found)
-    if timed and len(cells) > 1 and len(rows) > 1 and not any(cell.text for row in rows[1:] for cell in row[1:]):
-        return None
-    places = _places(path, cells, found, known, (TIME, *required), absent, defects)
-    if len(defects) > before:
-        return None
-    values = _numbers(path, rows, [column for column in known if column in places], places, defects)
-    if len(defects) > before:
-        return None
-    factors = {one[0]: one[1] for one in found if one is not None}
-    columns = {column: factors[column] * numbers for column, numbers in values.items()}
-    body = rows[1:]
-    if len(columns[TIME]) and columns[TIME][0] == 0:
-        columns = {column: numbers[1:] for column, numbers in columns.items()}
-        body = body[1:]
-    times = columns.pop(TIME)
-    _check_times(path, cells, [row[places[TIME]] for row in body], times, instants, defects)
-    if len(defects) > before:
-        return None
-    return HistoryTable(History(instants, columns), {column: cells[places[column]] for column in columns})
-
-
-def _rows(path: Path, text: str | None, count: int, defects: Defects) -> list[Row]:
-    """Return the header and at most so many rows and three: too many in any case, so that more are not read."""
     try:
-        rows = rows_of(read_text(path, LARGEST_FILE) if text is None else text, count + 4)
+        # a header and at most so many rows and three: too many in any case, so that more are not read
+        rows = rows_of(read_text(path, LARGEST_FILE) if text is None else text, len(instants) + 4)
     except OSError as error:
         defects.add(Place(path), f"cannot be read: {error.strerror}")
-        return []
+        return None
     except InputError as error:
         defects.take(error)
-        return []
+        return None
+    table = columns_of(path, rows, units, required, defects, absent, header)
+    if table is None:
+        return None
+    columns = {column: table.factors[column] * numbers for column, numbers in table.numbers.items()}
+    cells = table.times
+    if len(cells) and columns[TIME][0] == 0:
+        columns = {column: numbers[1:] for column, numbers in columns.items()}
+        cells = cells[1:]
+    times = columns.pop(TIME)
+    _check_times(path, table.header[TIME], cells, times, instants, defects)
+    return None if len(defects) > before else HistoryTable(History(instants, columns), table.header)
+
+
+def columns_of(
+    path: Path,
+    rows: Sequence[Row],
+    units: Mapping[str, str],
+    required: Collection[str],
+    defects: Defects,
+    absent: Mapping[str, str] = NO_ADVICE,
+    names: HeaderNames = AS_NAMED,
+) -> Columns | None:
+    """Return the time and the known columns of rows under a header; None where they have defects, or are blank.
+
+    Columns are known that have a unit (SI); those of other names are left out. Without a header all that are required
+    have to be called by their numbers. `absent` is what to do about columns that are not there.
+    """
     if not rows:
         defects.add(Place(path), "must be a table of numbers under a header", value="an empty file")
-    return rows
-
-
-def _places(
-    path: Path,
-    header: Row,
-    found: Sequence[tuple[str, float] | None],
-    known: Mapping[str, str],
-    required: Collection[str],
-    absent: str | None,
-    defects: Defects,
-) -> dict[str, int]:
-    """Return the place of each column in the rows; what is missing, repeated or in a strange unit is a defect."""
-    names = {column: named(column, unit) for column, unit in known.items()}
-    if all(number(cell.text) is not None for cell in header):
-        rule = f"must be the header {','.join(names.values())}"
-        defects.add(Place(path, header[0].line, 1), rule, field="header", value="numbers")
-        return {}
+        return None
+    before = len(defects)
+    known = {TIME: "s"} | dict(units)
+    header, body = rows[0], rows[1:]
+    has_header = any(number(cell.text) is None for cell in header)
+    if not has_header:
+        header, body = [replace(cell, text=str(i + 1)) for i, cell in enumerate(header)], rows
+    found = names.recognised([cell.text for cell in header], known)
     places: dict[str, int] = {}
+    factors: dict[str, float] = {}
     for i, one in enumerate(found):
         if one is None:
             continue
-        if one[0] in places:
-            cell = header[i]
-            defects.add(Place(path, cell.line, cell.column), f"{cell.text} must appear once", field="header")
-        places[one[0]] = i
-    missing = [column for column in required if column not in places]
-    if not missing:
-        return places
-    strangers = [cell for cell, one in zip(header, found, strict=True) if one is None and cell.text]
-    for cell in strangers:
-        advice = did_you_mean(cell.text.lower(), names.values())
-        rule = f"must be among {', '.join(names.values())}"
-        place = Place(path, cell.line, cell.column)
-        defects.add(place, rule, field="header", value=repr(cell.text), advice=advice)
-    if not strangers:
-        listed = ", ".join(cell.text for cell in header)
-        for column in missing:
-            advice = None if column == TIME else absent
-            place = Place(path, header[-1].line, header[-1].end)
-            defects.add(place, f"{names[column]} is required", field="header", value=listed, advice=advice)
-    return places
+        column, factor = one
+        if column in places:
+            place = Place(path, header[i].line, header[i].column)
+            defects.add(place, f"{header[i].text} must appear once", field="header")
+        places[column] = i
+        factors[column] = factor
+    is_blank = not any(cell.text for row in body for cell in row[1:])
+    if TIME in places and len(header) > 1 and body and is_blank:
+        return None
+    missing = [column for column in (TIME, *required) if column not in places]
+    called = {column: named(column, unit) for column, unit in known.items()}
+    if missing and not has_header:
+        rule = f"must be the header {','.join(called.values())}, or columns called by their numbers"
+        defects.add(Place(path, header[0].line, 1), rule, field="header", value="numbers")
+    for column in missing if has_header else ():
+        _add_missing(path, header, found, called[column], absent.get(column), defects)
+    if len(defects) > before:
+        return None
+    columns = [column for column in known if column in places]
+    numbers = _numbers(path, header, body, [places[column] for column in columns], defects)
+    if len(defects) > before:
+        return None
+    cells = {column: header[places[column]] for column in columns}
+    times = [row[places[TIME]] for row in body]
+    return Columns(dict(zip(columns, numbers, strict=True)), factors, cells, times)
 
 
-def _numbers(
-    path: Path, rows: Sequence[Row], columns: Sequence[str], places: Mapping[str, int], defects: Defects
-) -> dict[str, Array]:
-    """Return the values of columns; what is no number is added to the defects."""
-    header = rows[0]
-    table = np.full((len(columns), len(rows) - 1), np.nan)
-    for i, row in enumerate(rows[1:]):
+def _add_missing(
+    path: Path,
+    header: Row,
+    found: Sequence[tuple[str, float] | None],
+    called: str,
+    absent: str | None,
+    defects: Defects,
+) -> None:
+    """Add that a column is missing, at the header that is meant for it, or behind all of them."""
+    rule = f"{called} is required"
+    for cell, one in zip(header, found, strict=True):
+        advice = did_you_mean(cell.text.lower(), [called])
+        if one is None and advice is not None:
+            place = Place(path, cell.line, cell.column)
+            defects.add(place, rule, field="header", value=repr(cell.text), advice=advice)
+            return
+    listed = ", ".join(cell.text for cell in header)
+    defects.add(Place(path, header[-1].line, header[-1].end), rule, field="header", value=listed, advice=absent)
+
+
+def _numbers(path: Path, header: Row, body: Sequence[Row], places: Sequence[int], defects: Defects) -> Array:
+    """Return the values at some places of all rows, (places, rows); what is no number is added to the defects."""
+    table = np.full((len(places), len(body)), np.nan)
+    for i, row in enumerate(body):
         if len(row) != len(header):
             extra = row[min(len(row), len(header)) - 1]
             advice = "a decimal comma?" if len(row) > len(header) else None
             place = Place(path, extra.line, extra.end)
             defects.add(place, f"must have {len(header)} cells", value=len(row), advice=advice)
             continue
-        for j, column in enumerate(columns):
-            cell = row[places[column]]
+        for j, at in enumerate(places):
+            cell = row[at]
             value = number(cell.text)
-            field = header[places[column]].text
+            field = header[at].text
             place = Place(path, cell.line, cell.column)
             if value is None:
                 stated = repr(cell.text) if cell.text else "nothing"
                 defects.add(place, "must be a number", field=field, value=stated, advice=meant(cell.text))
-            elif not np.isfinite(value):
-                defects.add(place, "must be a finite number", field=field, value=cell.text)
-            elif abs(value) > LARGEST:
-                defects.add(place, f"must be at most {LARGEST:g} in size", field=field, value=cell.text)
+            elif not abs(value) <= LARGEST:
+                rule = f"must be a finite number of at most {LARGEST:g} in size"
+                defects.add(place, rule, field=field, value=cell.text)
             else:
                 table[j, i] = value
-    return dict(zip(columns, table, strict=True))
+    return table
 
 
 def _check_times(
-    path: Path, header: Row, cells: Sequence[Cell], times: Array, instants: Array, defects: Defects
+    path: Path, header: Cell, cells: Sequence[Cell], times: Array, instants: Array, defects: Defects
 ) -> None:
     step = float(instants[0])
     common = min(len(times), len(instants))
     off = np.flatnonzero(np.abs(times[:common] - instants[:common]) > SAME_INSTANT * step)
     row = int(off[0]) if len(off) else common  # the first that is wrong, or the first too many, or the one behind all
-    cell = cells[min(row, len(cells) - 1)] if cells else header[0]
+    cell = cells[min(row, len(cells) - 1)] if cells else header
     place = Place(path, cell.line, cell.column)
     if len(times) != len(instants):
         advice = None

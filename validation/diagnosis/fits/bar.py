@@ -2,10 +2,10 @@
 
 A row has the standard deviation sigma, sigma^2 = unit^2 / 12 + noise^2 + (1e-8 size)^2, of its last digit, of noise and
 of double precision. A column is explained if no row is beyond its last digit, or if what remains is hardly larger than
-digits leave by themselves, or hardly larger than sigma and white, and has no row beyond six sigma. The noise is what the
-column shows by itself: any linear model of one block obeys one recurrence of low order, so that the Hankel matrix of its
-samples has that rank; the singular values beyond it are noise, whatever the model. Contact that opens obeys none and
-looks noisier than it is: noise is no tenth of a column, and has no shape.
+digits leave by themselves, or hardly larger than sigma and white, and has no row beyond six sigma. The noise is what
+the column shows by itself: any linear model of one block obeys one recurrence of low order, so that the Hankel matrix
+of its samples has that rank; the singular values beyond it are noise, whatever the model. Contact that opens obeys none
+and looks noisier than it is: noise is no tenth of a column, and has no shape.
 """
 
 from __future__ import annotations

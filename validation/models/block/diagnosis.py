@@ -8,7 +8,6 @@ from validation.diagnosis.answer import Answer
 from validation.diagnosis.hooks import DiagnosisHooks
 from validation.diagnosis.judgement import check_block, judged_block
 from validation.diagnosis.numbers import CandidateChange, Number, laws, numbers_of_block
-from validation.diagnosis.other_solvers import rivals_of
 from validation.diagnosis.reading import Foreign
 from validation.scenes.scene import Scene
 
@@ -31,7 +30,3 @@ class HOOKS(DiagnosisHooks):
     def check(self, scene: Scene) -> None:
         """Refuse outlines, loads and schemes that `compare` does not step."""
         check_block(scene)
-
-    def rivals(self, scene: Scene) -> tuple[str, ...]:
-        """Return the exact bars, or elements."""
-        return rivals_of(scene)

@@ -7,14 +7,14 @@ from pathlib import Path
 
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.causes import CAUSES
-from validation.diagnosis.sentences import told_lines
+from validation.diagnosis.sentences import family, told_lines
 from validation.report.blocks import Block, Blocks, Callout, Heading, Paragraph, TableColumn, table
 from validation.report.chapters.text import parameters
 from validation.report.figures import histories, motion
 from validation.report.figures.charts import Figure
 from validation.report.figures.curves import HistoryPanel
 from validation.report.render.pdf import write_document
-from validation.runs.history import DISPLACEMENT, PRESSURE, History
+from validation.runs.history import DISPLACEMENT, PRESSURE
 from validation.runs.numbers import DASH, short
 from validation.scenes.scene import Scene
 
@@ -34,17 +34,10 @@ def write_page(scene: Scene, source: str, answer: Answer, out: Path) -> Path:
 
 def answer_figure(scene: Scene, answer: Answer, slide: bool = False) -> Figure:
     """Draw the file, DDA and the best explanation; below, what these leave of the file's displacement."""
-    histories_by_name = {}
-    for name, (time, values) in answer.curves.items():
-        pressure = {PRESSURE: answer.pressures[name]} if name in answer.pressures else {}
-        histories_by_name[name] = History(time, {DISPLACEMENT: values, **pressure})
-    drawn = (DISPLACEMENT, PRESSURE) if answer.pressures else (DISPLACEMENT,)
-    panel = HistoryPanel(
-        f"displacement of the {scene.kind.point}" + (", contact pressure" if answer.pressures else ""),
-        histories_by_name,
-        {},
-        next(iter(answer.curves)),
-    )
+    of_file = next(iter(answer.curves))
+    drawn = [name for name in (DISPLACEMENT, PRESSURE) if name in answer.curves[of_file].columns]
+    title = f"displacement of the {scene.kind.point}" + (", contact pressure" if PRESSURE in drawn else "")
+    panel = HistoryPanel(title, answer.curves, {}, of_file)
     return motion.history_figure([panel], *drawn, apart=True, slide=slide)
 
 
@@ -68,9 +61,9 @@ def page(scene: Scene, source: str, answer: Answer, directory: Path) -> Sequence
 
 def _facts(answer: Answer) -> Blocks:
     rows = [(name, CAUSES[name].words + _number(answer, name)) for name in answer.causes]
-    if answer.nearest and answer.nearest["causes"]:
-        rows.append(("nearest", f"{', '.join(answer.nearest['causes'])}: {short(100 * answer.unexplained, 2)} % left"))
-    rows += [("same rows", f"{', '.join(one['causes'])}; told apart by {one['further_scene']}") for one in answer.alike]
+    if answer.nearest:
+        rows.append(("nearest", f"{family(answer.nearest)}: {short(100 * answer.unexplained, 2)} % left"))
+    rows += [("same rows", f"{family(one)}; told apart by {one['further_scene']}") for one in answer.alike]
     if answer.departure:
         rows.append(("departure", f"step {answer.departure.step}, mainly in {answer.departure.kind}"))
     if answer.opened:
