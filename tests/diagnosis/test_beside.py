@@ -268,3 +268,11 @@ def test_what_surrounds_a_block_is_no_fault_and_slips_of_reading_are_causes():
             answer = answer_of(FOREIGN, replace(found, explained=explained, alike=same))
             assert (answer.causes, bool(answer.slips)) == (causes, explained)
             assert answer.departure is not None and agreements(answer)["reading"] is False
+
+
+def test_an_open_contact_has_no_noise():
+    columns = columns_of({})
+    columns[1, 12:] = 0.0
+    sizes = 1e-6 * np.max(np.abs(columns), axis=1, keepdims=True) * (columns != 0)
+    noisy = Swing(columns + sizes * np.random.default_rng(1).standard_normal(columns.shape))
+    assert noisy.is_noise(columns) and not noisy.is_noise(columns * (1 + 3e-6 * np.sin(np.arange(ROWS) / 9)))

@@ -113,6 +113,10 @@ def test_where_nothing_explains_a_history_the_nearest_solver_is_told(solvers):
     assert not_installed(SCENE, ["bar"]) == ()
     damped = SCENE.with_values({"time.gg": 0.99})
     assert verdict(recorded("continuum"), ["continuum"], damped) is None  # which takes minutes
+    unstable = SCENE.with_values({"contact.stiffness": 2 * BEYOND})
+    assert verdict(recorded("bar"), ["bar"], unstable) is None
+    with pytest.raises(InputError):
+        verdict(recorded("bar"), ["dda"], unstable)
 
 
 def test_of_the_readings_that_a_solver_gives_the_one_without_slips_is_taken():

@@ -151,3 +151,8 @@ def test_too_many_rows_are_refused_before_they_are_parsed(tmp_path, monkeypatch)
 def test_decimal_commas_beside_semicolons_are_read(tmp_path):
     path = written(tmp_path, "time;displacement\n0,1;-1,5e-3\n0,2;-2e-3\n0,3;-2,5e-3\n0,4;-3e-3\n")
     assert np.array_equal(read(path).displacement, [-1.5e-3, -2e-3, -2.5e-3, -3e-3])
+
+
+def test_times_in_milliseconds_of_every_second_row_are_in_another_unit():
+    (one,) = steppings(Foreign(4.0 * np.arange(1, 9), np.ones(8)), 0.002)
+    assert (one.factor, one.rows.tolist()) == (1e3, list(range(1, 17, 2)))

@@ -10,6 +10,7 @@ from oracles.program_scenes import scene_of
 from oracles.sliding_block import Plain, run
 
 from validation.diagnosis import judgement, search
+from validation.diagnosis.fits.bar import Bar
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
 
@@ -159,3 +160,12 @@ def test_a_tension_that_a_contact_bears_is_told_with_what_gives_the_same_rows(st
     low, high = answer.intervals["opening-tension"]
     assert low <= 1e6 * 2 / OPENS.side <= high  # two corners, over the length of the base
     assert f"({low:.3g} to {high:.3g} Pa" in answer.sentence
+
+
+def test_noise_has_no_shape_and_is_no_tenth_of_a_column():
+    n = np.arange(60)
+    noisy = Bar(np.zeros(60), 1.0, 5.0, 1e-3, n >= 0)
+    white, slow = 1e-3 * np.random.default_rng(0).standard_normal(60), 1.2e-3 * np.sin(0.2 * n)
+    assert noisy.holds(white) and not noisy.holds(0.5 * slow)
+    assert not replace(noisy, norm=0.05).holds(white)
+    assert replace(noisy, rounding=np.full(60, 2e-3)).holds(slow)

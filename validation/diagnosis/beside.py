@@ -182,13 +182,14 @@ class SceneSearch:
 
     def is_noise(self, columns: Array) -> bool:
         """Whether columns leave noise: small, without a shape, and no row that stands out."""
-        rest = self.recorded[:, : self.rows] - columns[:, : self.rows]
         if self.rows < NOISY or self.left(columns) > FAINT:
             return False
-        return all(
-            white(row) and not np.any(outlying(row, spread_of_most(row), unit))
-            for row, unit in zip(rest, self.allowed, strict=True)
-        )
+        recorded = self.recorded[:, : self.rows]
+        for values, row, unit in zip(recorded, recorded - columns[:, : self.rows], self.allowed, strict=True):
+            moving = row[values != 0]  # an open contact has neither pressure nor noise
+            if not white(moving) or np.any(outlying(row, spread_of_most(moving), unit)):
+                return False
+        return True
 
     def is_scene(self, tolerance: float = 0.0) -> bool:
         """Whether the rows up to the horizon are the scene's own, or differ by no more than a relative L2."""
@@ -413,6 +414,5 @@ def _stages(search: SceneSearch) -> list[Stage]:
         stages.append(evidence.column_stage(name, agrees, misfit, since, {"first_row": first}))
     if search.rows < search.scene_run.shape[1]:
         time = float(search.time[max(search.rows - 1, 0)])
-        words = f"two correct codes agree up to t = {time:.6g} s only; later rows are not judged"
-        stages.append(Stage("horizon", None, words, {"time": time, "rows": float(search.rows)}))
+        stages.append(Stage("horizon", None, evidence.horizon(time), {"time": time, "rows": float(search.rows)}))
     return stages

@@ -180,6 +180,11 @@ def stages(target: Target, expected: Array, reading: Reading) -> list[Stage]:
     return measured + _motion(target, expected[0])
 
 
+def horizon(time: float) -> str:
+    """Return the words for the end of what is judged of a motion that enlarges differences [s]."""
+    return f"two correct codes agree up to t = {time:.6g} s only; later rows are not judged"
+
+
 def column_stage(name: str, agrees: bool, misfit: float, beside: str, numbers: dict[str, float | None]) -> Stage:
     """Return whether a column alone is the scene's, with its relative L2 difference."""
     what = "is the scene's" if agrees else f"is {share_text(misfit)} off{beside}"

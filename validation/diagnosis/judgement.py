@@ -13,7 +13,7 @@ from validation.diagnosis import causes, evidence, families, schemes, sentences,
 from validation.diagnosis.answer import Answer, curves, finished
 from validation.diagnosis.beside import RunVerdict, answer_of
 from validation.diagnosis.causes import CAUSES, DIVERGED, SINGLE_ROWS, SWAPPED, UNEXPLAINED
-from validation.diagnosis.constants import FARTHER, SAME_NUMBER
+from validation.diagnosis.constants import FARTHER, ORDER, SAME_NUMBER
 from validation.diagnosis.evidence import Stage
 from validation.diagnosis.fits.fit import Fit, explains, fit_one, intervals, untold
 from validation.diagnosis.fits.target import Target
@@ -39,6 +39,7 @@ from validation.diagnosis.search import Verdict, as_it_is, simple, twofold, with
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import OPENING, Flags, Rectangle, Variant, own_variant, rectangle_of
 from validation.errors import InputError
+from validation.metrics.contact import AGREED, SHIFT
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.runs.numbers import remainder_text, significant
 from validation.scenes import features
@@ -189,7 +190,7 @@ def judged_block(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
         growth = evidence.growth(values, expected)
         if growth is not None:
             return _diverged(cases[0], growth)
-    case, verdict = _best(cases)
+    case, verdict = _best([_until_horizon(case) for case in cases] if scene_variant.opens else cases)
     misfits = [stage.numbers["misfit"] for stage in case.stages if "misfit" in stage.numbers] if tolerance else []
     if misfits and all(misfit is not None and misfit <= tolerance for misfit in misfits):
         verdict = Verdict(verdict.scene_fit, replace(verdict.best, moves=(), fit=verdict.scene_fit), True)
@@ -208,6 +209,35 @@ def judged_block(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
     if theirs is not None and theirs.explained and FARTHER * theirs.left <= alone:
         return _of_rival(case, theirs)
     return _answer(case, verdict)
+
+
+def _until_horizon(case: Case) -> Case:
+    """Return the case with the rows up to which two correct codes agree on the scene.
+
+    Contact that opens enlarges a difference at every landing: rounding in time makes another motion of it. A horizon
+    before the first few rows cuts none: nothing could be told of these alone.
+    """
+    target, v = case.target, case.scene_variant
+    shifted = [replace(v, **{name: getattr(v, name) + SHIFT}) for name in ("softness", "density", "young")]
+    runs = histories(target.column, [v, *shifted], target.steps)
+    columns = np.array([runs.displacement, runs.pressure])[:, target.rows]
+    sizes = np.max(np.abs(columns[..., 0]), axis=1)[:, None, None]
+    beyond = np.flatnonzero(np.any(np.abs(columns - columns[..., :1]) > AGREED * sizes, axis=(0, 2)))
+    if not len(beyond) or beyond[0] < ORDER:
+        return case
+    rows = int(beyond[0])
+    reading = case.reading
+    stepping = reading.stepping
+    horizon = evidence.horizon(float(case.time[rows - 1]))
+    kept = replace(
+        stepping,
+        steps=stepping.steps[: int(stepping.rows[rows - 1]) + 1],
+        rows=stepping.rows[:rows],
+        note="; ".join(filter(None, [stepping.note, horizon])),
+    )
+    rounding = None if reading.rounding is None else reading.rounding[:, :rows]
+    recorded = reading.recorded[:, :rows]
+    return replace(case, reading=replace(reading, stepping=kept, recorded=recorded, rounding=rounding))
 
 
 def _beyond(scene: Scene) -> list[str]:

@@ -234,6 +234,8 @@ def _own_steps(gaps: Array, usual: float, step: float) -> list[Stepping]:
 
 
 def _unit_slip(ratio: float) -> float | None:
-    """Return the power of a thousand that a ratio is, or None."""
+    """Return the power of a thousand that a ratio is, a large one times as many steps as a row shows; or None."""
     power = round(math.log10(ratio) / 3) * 3
-    return 10.0**power if power and abs(ratio / 10.0**power - 1) < SEEN else None
+    steps = ratio / 10.0**power
+    every = max(round(steps), 1) if power > 0 else 1
+    return 10.0**power if power and abs(steps / every - 1) < SEEN else None

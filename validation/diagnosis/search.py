@@ -240,7 +240,8 @@ def score(target: Target, deviations: Array, explanation: Explanation) -> float:
     rare = sum(_is_rare(move, len(explanation.moves)) for move in explanation.moves)
     v = explanation.fit.variant
     rare += bool(v.band and v.reopening)  # two changes: one of where a contact closes, one of where it opens
-    chi_square = max(float(shares @ shares) / n, 1.0)
+    with np.errstate(over="ignore"):  # beside a column at rest nothing else is likely
+        chi_square = max(float(shares @ shares) / n, 1.0)
     return n * math.log(chi_square) + len(explanation.fit.free) * math.log(n) + RARE * rare
 
 
