@@ -114,7 +114,7 @@ def test_where_nothing_explains_a_history_the_nearest_solver_is_told(solvers):
     damped = SCENE.with_values({"time.gg": 0.99})
     assert verdict(recorded("continuum"), ["continuum"], damped) is None  # which takes minutes
     unstable = SCENE.with_values({"contact.stiffness": 2 * BEYOND})
-    assert verdict(recorded("bar"), ["bar"], unstable) is None
+    assert verdict(recorded("bar"), ["fem"], unstable) is None
     with pytest.raises(InputError):
         verdict(recorded("bar"), ["dda"], unstable)
 
