@@ -13,7 +13,7 @@ from validation.diagnosis import causes, evidence, families, schemes, sentences,
 from validation.diagnosis.answer import Answer, curves, finished
 from validation.diagnosis.beside import RunVerdict, answer_of
 from validation.diagnosis.causes import CAUSES, DIVERGED, SINGLE_ROWS, SWAPPED, UNEXPLAINED
-from validation.diagnosis.constants import FARTHER, ORDER, SAME_NUMBER
+from validation.diagnosis.constants import ARITHMETIC, CLEARLY, FARTHER, ORDER, SAME_NUMBER
 from validation.diagnosis.evidence import Stage
 from validation.diagnosis.fits.fit import Fit, explains, fit_one, intervals, untold
 from validation.diagnosis.fits.target import Target
@@ -39,7 +39,7 @@ from validation.diagnosis.search import Verdict, as_it_is, simple, twofold, with
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import OPENING, Flags, Rectangle, Variant, own_variant, rectangle_of
 from validation.errors import InputError
-from validation.metrics.contact import AGREED, SHIFT
+from validation.metrics.contact import SHIFT
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.runs.numbers import remainder_text, significant
 from validation.scenes import features
@@ -221,8 +221,10 @@ def _until_horizon(case: Case) -> Case:
     shifted = [replace(v, **{name: getattr(v, name) + SHIFT}) for name in ("softness", "density", "young")]
     runs = histories(target.column, [v, *shifted], target.steps)
     columns = np.array([runs.displacement, runs.pressure])[:, target.rows]
-    sizes = np.max(np.abs(columns[..., 0]), axis=1)[:, None, None]
-    beyond = np.flatnonzero(np.any(np.abs(columns - columns[..., :1]) > AGREED * sizes, axis=(0, 2)))
+    # rounding of another program is up to a tenth of `SHIFT`, 450 last bits: before the horizon it stays below
+    # `ARITHMETIC`, as `SHIFT` does below ten times that
+    most = CLEARLY * ARITHMETIC * np.max(np.abs(columns[..., 0]), axis=1)[:, None, None]
+    beyond = np.flatnonzero(np.any(np.abs(columns - columns[..., :1]) > most, axis=(0, 2)))
     if not len(beyond) or beyond[0] < ORDER:
         return case
     rows = int(beyond[0])
