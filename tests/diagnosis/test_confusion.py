@@ -49,8 +49,7 @@ def test_the_counts_of_the_documentation_are_these(fifty):
 @pytest.mark.parametrize(
     ("kind", "seeds", "least"),
     [
-        # an opened contact beside a load of 0.99999998; two numbers of a product for two others, one of them rare; a
-        # cause that misses the bar by a hair
+        # an opened contact beside a load of 0.99999998; two numbers of a product; a cause just beyond the bar
         ("slips", [*range(4), 5, 42, 117, 33027, 40113], 3),
         # one landing; the horizon of `bar` beside the last one is its first row
         ("schemes", [44, 80, 88, 96, 104, 108], 2),

@@ -169,3 +169,7 @@ def test_noise_has_no_shape_and_is_no_tenth_of_a_column():
     assert noisy.holds(white) and not noisy.holds(0.5 * slow)
     assert not replace(noisy, norm=0.05).holds(white)
     assert replace(noisy, rounding=np.full(60, 2e-3)).holds(slow)
+
+
+def test_missing_shear_springs():
+    assert judged(replace(PLAIN, mu=0.2), ps=0.0).causes == ["shear-springs-factor"]

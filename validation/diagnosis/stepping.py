@@ -160,7 +160,7 @@ class Stepper:
         self.moduli = model.block.section.area * rectangle.elasticity(variants)
         self.lever = normal[0, 4]
         self.top = model.block.corners[2, 1] / 2
-        self.shear_springs = rectangle.shear * np.exp(-soft * of.tied) * shear[0, 3] ** 2
+        self.shear_springs = rectangle.shear * of.sheared * np.exp(-soft * of.tied) * shear[0, 3] ** 2
         self.load = of.load * rectangle.pressure * self.base_width
 
     # ---- matrices ----

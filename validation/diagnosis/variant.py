@@ -38,6 +38,7 @@ class Variant:
     start: Literal["zero", "consistent"] = "zero"
     softness: float = 0.0  # ln of the scene's spring stiffness over that in effect [-]
     tied: bool = True  # the shear springs share the softness
+    sheared: float = 1.0  # stiffness of the shear springs alone, in addition [-]
     base: float = 0.0  # mass of the yielding base over that of the block; 0 is a spring in series [-]
     weight: float = 0.0  # own weight, as a share of 9.81 m/s2 [-]
     gravity: float = 1.0  # over the scene's [-]
