@@ -10,11 +10,13 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 
+import numpy as np
+
 from validation.diagnosis import evidence
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.beside import RunVerdict, SceneSearch, answer_of, searches_of, verdict_of
 from validation.diagnosis.causes import BENIGN_COMPLIANCE, words_of
-from validation.diagnosis.constants import SLIGHT
+from validation.diagnosis.constants import CLEARLY, SLIGHT
 from validation.diagnosis.evidence import Departure
 from validation.diagnosis.numbers import CandidateChange
 from validation.diagnosis.one_change import STARTS, Fitted, of_scene
@@ -61,7 +63,9 @@ class SolverSearch(SceneSearch):
         if begun or not self.solver.meshed or mesh.mesh is not None or mesh.per_side <= COARSE:
             return super().explanations(begun)
         coarse = SolverSearch(self.scene.with_values({"fem.elements": COARSE}), self.reading, self.solver.name)
-        near = coarse.explanations()
+        sizes = np.maximum(np.linalg.norm(self.scene_run, axis=1), np.finfo(float).tiny)
+        error = float(np.max(np.linalg.norm(coarse.scene_run - self.scene_run, axis=1) / sizes))
+        near = [each for each in coarse.explanations() if each.explains or each.left <= CLEARLY * error]
         return super().explanations(near) if near else []
 
     def is_noise(self, columns: Array) -> bool:
