@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from validation.diagnosis.beside import RunVerdict, SceneSearch, answer_of, sear
 from validation.diagnosis.causes import BENIGN_COMPLIANCE, words_of
 from validation.diagnosis.constants import CLEARLY, SLIGHT
 from validation.diagnosis.evidence import Departure
+from validation.diagnosis.fits.bar import Bar
 from validation.diagnosis.numbers import CandidateChange
 from validation.diagnosis.one_change import STARTS, Fitted, of_scene
 from validation.diagnosis.reading import Foreign
@@ -72,7 +73,16 @@ class SolverSearch(SceneSearch):
         """Whether columns leave noise, or beside an exact solution what a mesh does."""
         is_exact = self.model and not self.solver.meshed
         least = min(MESH, SLIGHT * self.left(self.scene_run)) if is_exact else 0.0
-        return self.left(columns) <= least or super().is_noise(columns)
+        if self.left(columns) <= least or super().is_noise(columns):
+            return True
+        is_whole = self.rows == self.recorded.shape[1]  # else a run without bounds
+        return is_whole and all(bar.holds(row) for bar, row in zip(self.bars, self.recorded - columns, strict=True))
+
+    @cached_property
+    def bars(self) -> list[Bar]:
+        """What digits and noise of a linear motion may leave of each column."""
+        roundings = [None] * len(self.recorded) if self.reading.rounding is None else list(self.reading.rounding)
+        return [Bar.of(values, unit) for values, unit in zip(self.recorded, roundings, strict=True)]
 
     def departure(self, verdict: RunVerdict) -> Departure | None:
         """Return where a history departs: what is exact in time, from the run of `dda` under the scene's scheme."""
