@@ -91,7 +91,7 @@ class SceneSearch:
         self.recorded = self.reading.recorded
         scene_run = self.run({}, self.recorded.shape[1])
         if scene_run is None:
-            raise InputError("dda cannot run it at the steps of the history", source=self.scene.name)
+            raise InputError(f"{self.solver.name} cannot run it at the steps of the history", source=self.scene.name)
         self.scene_run = scene_run
         units = self.reading.rounding
         if units is None:

@@ -198,15 +198,15 @@ def judged_block(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
         case, verdict = _without_single_rows(case, verdict)
     if verdict.explains:
         return _answer(case, verdict)
-    alone = verdict.best.fit.misfit
+    single_misfit = verdict.best.fit.misfit
     has_rivals = scene.contact.law == "locked" and scene.time.scheme == "newmark" and np.ptp(case.target.steps) == 0
     rivals = searches_beside(scene, [case.reading], rivals_of(scene)) if has_rivals else []
     theirs = as_they_are(rivals) or with_one_change([rival for rival in rivals if not rival.solver.meshed])
-    if theirs is None or not theirs.explained or FARTHER * theirs.left > alone:
+    if theirs is None or not theirs.explained or FARTHER * theirs.left > single_misfit:
         verdict = twofold(case.target, scene_variant, verdict)
         # runs of a mesh take longest
         theirs = None if verdict.explains else with_one_change([rival for rival in rivals if rival.solver.meshed])
-    if theirs is not None and theirs.explained and FARTHER * theirs.left <= alone:
+    if theirs is not None and theirs.explained and FARTHER * theirs.left <= single_misfit:
         return _of_rival(case, theirs)
     return _answer(case, verdict)
 

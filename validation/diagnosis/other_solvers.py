@@ -18,7 +18,7 @@ from validation.diagnosis.beside import RunVerdict, SceneSearch, answer_of, sear
 from validation.diagnosis.causes import BENIGN_COMPLIANCE, words_of
 from validation.diagnosis.constants import CLEARLY, SLIGHT
 from validation.diagnosis.evidence import Departure
-from validation.diagnosis.fits.bar import Bar
+from validation.diagnosis.fits.bar import Bar, bars_of
 from validation.diagnosis.numbers import CandidateChange
 from validation.diagnosis.one_change import STARTS, Fitted, of_scene
 from validation.diagnosis.reading import Foreign
@@ -81,8 +81,7 @@ class SolverSearch(SceneSearch):
     @cached_property
     def bars(self) -> list[Bar]:
         """What digits and noise of a linear motion may leave of each column."""
-        roundings = [None] * len(self.recorded) if self.reading.rounding is None else list(self.reading.rounding)
-        return [Bar.of(values, unit) for values, unit in zip(self.recorded, roundings, strict=True)]
+        return bars_of(self.recorded, self.reading.rounding)
 
     def departure(self, verdict: RunVerdict) -> Departure | None:
         """Return where a history departs: what is exact in time, from the run of `dda` under the scene's scheme."""

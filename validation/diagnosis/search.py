@@ -194,9 +194,9 @@ def decided(target: Target, scene_fit: Fit, explanations: Sequence[Explanation])
     best, names = _canonical(target, best, close)
     # what is as likely and misses the bar by a hair is as likely still, but no change with a part that has no effect
     likely = sorted((f for f in explanations if scores[id(f)] < near and f not in close), key=order)
-    several = [*close, *(f for f in likely if is_determined(target, scene_fit, f) and not set(f.ids) <= set(best.ids))]
-    least = [f for f in several if not any(set(other.ids) < set(f.ids) for other in (best, *close, *likely))]
-    alike = {f.ids: f for f in reversed(least) if f.ids not in names}
+    rivals = [*close, *(f for f in likely if is_determined(target, scene_fit, f) and not set(f.ids) <= set(best.ids))]
+    wider = [f for f in rivals if any(set(other.ids) < set(f.ids) for other in (best, *close, *likely))]
+    alike = {f.ids: f for f in reversed(rivals) if f.ids not in names and f not in wider}
     is_named = not alike and _stands_out(target, scene_fit, best) and not _of_one_landing(target, best)
     aliases = tuple(f for ids, f in names.items() if ids != best.ids)
     others = {f.ids: f for f in fine if f.ids not in {*names, *alike} and not set(best.ids) < set(f.ids)}

@@ -133,12 +133,16 @@ def _folders(root: Path) -> Iterator[Path]:
     for directory, names, files in os.walk(root):
         depth = len(Path(directory).relative_to(root).parts)
         names[:] = sorted(name for name in names if not name.startswith(".")) if depth < DEEPEST else []
-        if FILE in files or _tables(Path(directory)):
+        if FILE in files or any(map(_is_table, map(Path, files))):
             yield Path(directory)
 
 
+def _is_table(path: Path) -> bool:
+    return path.suffix.lower() == TABLE and not path.name.startswith(".")
+
+
 def _tables(folder: Path) -> list[Path]:
-    return sorted(path for path in folder.iterdir() if path.suffix.lower() == TABLE and not path.name.startswith("."))
+    return sorted(filter(_is_table, folder.iterdir()))
 
 
 def _read_set(folder: Path, own: Mapping[str, Problem] | None, defects: Defects) -> AnswerSet | None:

@@ -90,12 +90,12 @@ def of_output(scene: Scene, dense: History, names: tuple[str, ...]) -> Iterator[
     }
     step = scene.time.step
     instants = step * np.arange(1.0, scene.time.steps + 1)
+    plain = {name: course(instants) for name, course in courses.items()}
 
     def written(group: Sequence[str], factor: float = 1.0, rate: float = 1.0, late: float = 0.0) -> Values:
         """Return all columns, those of a group larger by a factor and at the instants rate (t - late dt)."""
         other_instants = np.maximum(rate * (instants - late * step), 0.0)
-        columns = {name: course(instants) for name, course in courses.items()}
-        return {OUTPUT: columns | {name: factor * courses[name](other_instants) for name in group}}
+        return {OUTPUT: plain | {name: factor * courses[name](other_instants) for name in group}}
 
     for group in (names, *((name,) for name in names if len(names) > 1)):
         which = "all columns are" if group == names else f"{group[0]} is"

@@ -30,6 +30,12 @@ ROUNDED = 0.5  # given: last digits: the most that rounding leaves
 AROUND = 2  # rows at the start, where what dies out stands out too
 
 
+def bars_of(columns: Array, roundings: Array | None) -> list[Bar]:
+    """Return what digits and noise may leave of each column; digits are seen from the values where none are given."""
+    units = [None] * len(columns) if roundings is None else list(roundings)
+    return [Bar.of(values, unit) for values, unit in zip(columns, units, strict=True)]
+
+
 def last_digits(values: Array) -> Array:
     """Return the unit of the last printed digit of each value, zero where all digits of a double are given.
 

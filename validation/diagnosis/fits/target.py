@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validation.diagnosis.constants import UNBOUNDED, WINDOW
-from validation.diagnosis.fits.bar import AROUND, Bar
+from validation.diagnosis.fits.bar import AROUND, Bar, bars_of
 from validation.diagnosis.fits.bar import norm as size_of
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Rectangle, Variant
@@ -83,8 +83,7 @@ class Target:
     @cached_property
     def bars(self) -> list[Bar]:
         """What digits and noise may leave of each column."""
-        roundings = [None] * len(self.recorded) if self.rounding is None else list(self.rounding)
-        return [Bar.of(values, rounding) for values, rounding in zip(self.recorded, roundings, strict=True)]
+        return bars_of(self.recorded, self.rounding)
 
     def explained(self, joined: Array) -> bool:
         """Whether nothing but digits and noise remains in every column."""
